@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+# What every target shares: warnings, sanitizers, the system's Python for the generators, and shader compilation.
+
+# Debian's own Python has the packages of setup/packages.txt; another one first in PATH does not.
+if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+  set(Python3_EXECUTABLE /usr/bin/python3)
+endif()
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+add_library(chandelier_options INTERFACE)
+target_compile_options(chandelier_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
+if(CHANDELIER_SANITIZE)
+  add_compile_options(-fsanitize=${CHANDELIER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${CHANDELIER_SANITIZE})
+endif()
+
+# chandelier_shaders(TARGET file…): compiles each GLSL file to SPIR-V with glslangValidator and embeds it, so that
+# #include "shaders/NAME.h" gives `constexpr uint32_t NAME_EXT[]` (dots become underscores).
+function(chandelier_shaders target)
+  find_program(GLSLANG glslangValidator REQUIRED)
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/shaders)
+  foreach(source ${ARGN})
+    get_filename_component(name ${source} NAME)
+    string(REPLACE "." "_" symbol ${name})
+    set(header ${out}/${symbol}.h)
+    add_custom_command(
+      OUTPUT ${header}
+      COMMAND ${CMAKE_COMMAND} -E make_directory ${out}
+      COMMAND ${GLSLANG} --quiet -V --target-env vulkan1.3 -I${CMAKE_SOURCE_DIR}/runtime -I${CMAKE_BINARY_DIR}/generated
+              --depfile ${header}.d --vn ${symbol} -o ${header} ${CMAKE_CURRENT_SOURCE_DIR}/${source}
+      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source} chandelier_generated
+      DEPFILE ${header}.d
+      COMMENT "Shader ${source}"
+      VERBATIM)
+    target_sources(${target} PRIVATE ${header})
+  endforeach()
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
+endfunction()
