@@ -126,8 +126,6 @@ class Field:
     def rule_text(self):
         """For FORMAT.md."""
         rules = []
-        if self.type in FLOATS:
-            rules.append("finite")
         if self.min is not None:
             rules.append(f"≥ {self.min}")
         if self.max is not None:
@@ -289,7 +287,6 @@ class Schema:
             if section.record:
                 for field in section.record.fields:
                     section.checks += field_checks(field, self.by_name, "r")
-        self.uses_strings = any(f.type == "string" for r in self.records for f in r.fields)
         self.hash = int.from_bytes(hashlib.sha256(self.canonical().encode()).digest()[:8], "little")
 
     def check_references(self):
@@ -311,6 +308,9 @@ class Schema:
                         raise SchemaError(f"{place}: no such section ({target})")
                 if field.run and field.length not in fields:
                     raise SchemaError(f"{place}: no such length field ({field.length})")
+
+    def constant(self, name):
+        return next(c.value for c in self.constants if c.name == name)
 
     def canonical(self):
         """What the hash is taken of: everything that says how bytes are read, nothing that only explains."""
@@ -362,7 +362,7 @@ def main():
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(env.get_template(template).render(s=schema, record=record), encoding="utf-8")
     if options.format or options.check_format:
-        page = env.get_template("FORMAT.md.j2").render(s=schema)
+        page = env.get_template("FORMAT.md.j2").render(s=schema, alignment=schema.constant("section_alignment"))
         if options.format:
             options.format.write_text(page, encoding="utf-8")
         elif options.check_format.read_text(encoding="utf-8") != page:

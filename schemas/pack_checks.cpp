@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules of a pack that one field alone cannot break.
+#include "pack_checks.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+
+namespace chandelier::pack {
+namespace {
+
+/// How far from 1 the length of a direction may be, and from 0 the dot product of two that are perpendicular.
+constexpr float direction_tolerance = 1e-3f;
+
+std::string text(float value) {
+  char buffer[32];
+  return std::string(buffer, std::to_chars(buffer, buffer + sizeof(buffer), value).ptr);
+}
+
+std::string text(std::uint64_t value) {
+  return std::to_string(value);
+}
+
+float dot(const glm::vec3& a, const glm::vec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+std::string direction_fault(const char* name, const glm::vec3& direction) {
+  const float length = std::sqrt(dot(direction, direction));
+  if (std::abs(length - 1.0f) <= direction_tolerance) return {};
+  return std::string(".") + name + ": length " + text(length) + " is not 1";
+}
+
+std::string bounds_fault(const char* name, const glm::vec3& low, const glm::vec3& high) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (low[axis] > high[axis]) {
+      return std::string(".") + name + "." + "xyz"[axis] + ": " + text(low[axis]) + " is above the maximum " +
+             text(high[axis]);
+    }
+  }
+  return {};
+}
+
+std::string multiple_fault(const char* name, std::uint64_t value, std::uint64_t of) {
+  if (value % of == 0) return {};
+  return std::string(".") + name + ": " + text(value) + " is not a multiple of " + text(of);
+}
+
+std::string fault(const Batch& batch) {
+  if (std::string line = multiple_fault("first_index", batch.first_index, 3); !line.empty()) return line;
+  if (std::string line = multiple_fault("index_count", batch.index_count, 3); !line.empty()) return line;
+  return bounds_fault("bounds_min_ls", batch.bounds_min_ls, batch.bounds_max_ls);
+}
+
+std::string fault(const BatchInstance& draw) {
+  return bounds_fault("bounds_min_ws", draw.bounds_min_ws, draw.bounds_max_ws);
+}
+
+std::string fault(const Image& image) {
+  if (std::string line = multiple_fault("first_byte", image.first_byte, 16); !line.empty()) return line;
+  const std::uint32_t full_chain = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+  if (image.level_count > full_chain) {
+    return ".level_count: " + text(std::uint64_t{image.level_count}) + " is above the " +
+           text(std::uint64_t{full_chain}) + " levels of its size";
+  }
+  if (image.size_bytes != image_bytes(image)) {
+    return ".size_bytes: " + text(image.size_bytes) + " where its levels have " + text(image_bytes(image));
+  }
+  return {};
+}
+
+std::string fault(const Light& light) {
+  if (light.inner_cone_cos < light.outer_cone_cos) {
+    return ".inner_cone_cos: " + text(light.inner_cone_cos) + " is below outer_cone_cos " + text(light.outer_cone_cos);
+  }
+  return direction_fault("direction_ws", light.direction_ws);
+}
+
+std::string fault(const Camera& camera) {
+  if (std::string line = direction_fault("forward_ws", camera.forward_ws); !line.empty()) return line;
+  if (std::string line = direction_fault("up_ws", camera.up_ws); !line.empty()) return line;
+  const float cosine = dot(camera.forward_ws, camera.up_ws);
+  if (std::abs(cosine) <= direction_tolerance) return {};
+  return ".up_ws: not perpendicular to forward_ws, their dot product is " + text(cosine);
+}
+
+template <typename Record>
+std::string first_fault(const char* section, std::span<const Record> records) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (std::string line = fault(records[i]); !line.empty()) return section + ("[" + text(i) + "]") + line;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::uint64_t image_bytes(const Image& image) {
+  constexpr std::uint64_t texel_bytes = 4;  // both formats are RGBA8
+  std::uint64_t bytes = 0;
+  for (std::uint32_t level = 0; level < image.level_count; ++level) {
+    bytes += texel_bytes * std::max(1u, image.width >> level) * std::max(1u, image.height >> level);
+  }
+  return bytes;
+}
+
+std::string check(const View& view) {
+  if (std::string line = validate(view); !line.empty()) return line;
+  if (std::string line = bounds_fault("bounds_min_ws", view.bake_info->bounds_min_ws, view.bake_info->bounds_max_ws);
+      !line.empty()) {
+    return "bake_info" + line;
+  }
+  if (view.indices.size() % 3 != 0) {
+    return "indices: " + text(view.indices.size()) + " records are not a multiple of 3";
+  }
+  if (std::string line = first_fault("batches", view.batches); !line.empty()) return line;
+  if (std::string line = first_fault("batch_instances", view.batch_instances); !line.empty()) return line;
+  if (std::string line = first_fault("images", view.images); !line.empty()) return line;
+  if (std::string line = first_fault("lights", view.lights); !line.empty()) return line;
+  return first_fault("cameras", view.cameras);
+}
+
+}  // namespace chandelier::pack
