@@ -14,7 +14,9 @@ if(CCACHE)
 endif()
 
 add_library(chandelier_options INTERFACE)
-target_compile_options(chandelier_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
+# Vulkan's structs are filled by naming what matters; the rest is zero.
+target_compile_options(chandelier_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+                       -Wno-missing-field-initializers)
 if(CHANDELIER_SANITIZE)
   add_compile_options(-fsanitize=${CHANDELIER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${CHANDELIER_SANITIZE})
