@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras of the player.
+#include "player/camera.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+namespace chandelier::player {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kHighestPitch = 1.553f;  // radians: 89 degrees
+const glm::vec3 kUp(0.0f, 1.0f, 0.0f);
+
+Camera named(const pack::Camera& from) {
+  Camera camera;
+  camera.eye_ws = from.position_ws;
+  camera.forward_ws = from.forward_ws;
+  camera.up_ws = from.up_ws;
+  camera.yfov_rad = from.yfov_rad;
+  if (from.znear_m > 0.0f) camera.znear_m = from.znear_m;
+  return camera;
+}
+
+}  // namespace
+
+bool is_camera_numbers(std::string_view text) {
+  return text.find(',') != text.npos && text.find_first_not_of("0123456789+-.eE, ") == text.npos;
+}
+
+std::optional<Camera> camera_from_numbers(std::string_view text) {
+  std::array<float, 7> numbers{};
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    while (at != end && (*at == ' ' || *at == '+')) ++at;
+    const auto [after, error] = std::from_chars(at, end, numbers[i]);
+    if (error != std::errc() || !std::isfinite(numbers[i])) return std::nullopt;
+    at = after;
+  }
+  const glm::vec3 eye(numbers[0], numbers[1], numbers[2]);
+  const glm::vec3 target(numbers[3], numbers[4], numbers[5]);
+  if (at != end || eye == target || !(numbers[6] > 0.0f && numbers[6] < 179.0f)) return std::nullopt;
+  return camera_looking_at(eye, target, numbers[6] * kPi / 180.0f);
+}
+
+Camera camera_looking_at(const glm::vec3& eye_ws, const glm::vec3& target_ws, float yfov_rad) {
+  Camera camera;
+  camera.eye_ws = eye_ws;
+  camera.forward_ws = glm::normalize(target_ws - eye_ws);
+  camera.yfov_rad = yfov_rad;
+  const bool vertical = std::abs(camera.forward_ws.y) > 0.9999f;
+  const glm::vec3 about_up = vertical ? glm::vec3(0.0f, 0.0f, -1.0f) : kUp;
+  const glm::vec3 right = glm::normalize(glm::cross(camera.forward_ws, about_up));
+  camera.up_ws = glm::cross(right, camera.forward_ws);
+  return camera;
+}
+
+Camera camera_framing(const glm::vec3& bounds_min_ws, const glm::vec3& bounds_max_ws, float aspect) {
+  const glm::vec3 center = 0.5f * (bounds_min_ws + bounds_max_ws);
+  const float radius = std::max(0.5f * glm::length(bounds_max_ws - bounds_min_ws), 1e-3f);
+  const float yfov = 50.0f * kPi / 180.0f;
+  // The box's sphere must fit the narrower of the two angles.
+  const float half_angle = std::min(0.5f * yfov, std::atan(std::tan(0.5f * yfov) * aspect));
+  const float distance = radius / std::sin(half_angle);
+  const glm::vec3 from = glm::normalize(glm::vec3(0.6f, 0.45f, 1.0f));
+  Camera camera = camera_looking_at(center + distance * from, center, yfov);
+  camera.znear_m = std::min(camera.znear_m, 0.5f * (distance - radius));
+  return camera;
+}
+
+NamedCamera choose_camera(const pack::File& pack, const std::string& name, float aspect) {
+  const auto cameras = pack.view().cameras;
+  std::vector<std::string_view> names;
+  for (const pack::Camera& camera : cameras) {
+    names.push_back(pack.text(camera.name));
+    if (name.empty() || names.back() == name) return {std::string(names.back()), named(camera)};
+  }
+  if (name.empty()) {
+    const pack::BakeInfo& info = pack.view().bake_info[0];
+    return {"", camera_framing(info.bounds_min_ws, info.bounds_max_ws, aspect)};
+  }
+  if (names.empty()) throw std::runtime_error(fmt::format("--camera: the pack has no cameras ({})", name));
+  throw std::runtime_error(fmt::format("--camera: the pack has {}, but no ({})", fmt::join(names, ", "), name));
+}
+
+void turn(Camera& camera, float yaw_rad, float pitch_rad) {
+  const glm::vec3& f = camera.forward_ws;
+  const float yaw = std::atan2(f.x, -f.z) + yaw_rad;
+  const float pitch = std::clamp(std::asin(std::clamp(f.y, -1.0f, 1.0f)) + pitch_rad, -kHighestPitch, kHighestPitch);
+  const glm::vec3 forward(std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch));
+  const Camera upright = camera_looking_at(glm::vec3(0.0f), forward, camera.yfov_rad);
+  camera.forward_ws = upright.forward_ws;
+  camera.up_ws = upright.up_ws;
+}
+
+void move(Camera& camera, const glm::vec3& right_up_forward_m) {
+  const glm::vec3 right = glm::normalize(glm::cross(camera.forward_ws, camera.up_ws));
+  camera.eye_ws += right_up_forward_m.x * right + right_up_forward_m.y * kUp + right_up_forward_m.z * camera.forward_ws;
+}
+
+}  // namespace chandelier::player

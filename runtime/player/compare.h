@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two presets, one view: pictures, their difference and what each cost. schemas/comparison.schema.json describes the
+// JSON.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "player/options.h"
+#include "player/stats.h"
+
+namespace chandelier::player {
+
+/// Linear: radiance before exposure and tone map. Shown: sRGB values as on a screen, 0..1.
+struct Differences {
+  double rmse_linear = 0.0;
+  double rmse_shown = 0.0;
+  double max_linear = 0.0;
+  double max_shown = 0.0;
+};
+
+struct Comparison {
+  Run a;
+  Run b;
+  Differences differences;
+  std::string difference_image;
+  float heat_scale = 0.0f;  // the shown difference that is drawn red
+};
+
+/// Over R, G and B of every pixel; both of the same size.
+Differences differences(const Picture& a, const Picture& b);
+/// Per pixel: the largest difference of a shown channel, 0..1.
+std::vector<float> shown_differences(const Picture& a, const Picture& b);
+/// The value that 99.9 % of `values` do not exceed, so that a few stray pixels do not darken the map; where that is 0
+/// their largest, and 1/255 where they all are 0.
+float heat_scale(std::vector<float> values);
+/// Dark blue at 0, cyan, yellow, red at 1; sRGB.
+std::array<uint8_t, 3> heat_color(float t);
+
+nlohmann::ordered_json to_json(const Comparison& comparison);
+
+/// Draws both recipes in turns and writes pictures, difference.png, comparison.json and report.html. Throws.
+void run_comparison(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer);
+
+}  // namespace chandelier::player

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws into a file, with no display.
+#include "player/headless.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "player/image_files.h"
+#include "player/stats.h"
+
+namespace chandelier::player {
+
+void run_headless(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer) {
+  const NamedRecipe& named = options.recipes.front();
+  const RenderSettings settings = render_settings(options, named.recipe, camera.camera);
+  renderer.warm_up(settings);
+  std::vector<FrameStats> frames(options.frames.value_or(1));
+  for (FrameStats& frame : frames) frame = renderer.draw(settings);
+
+  Run run;
+  run.pack = options.pack.filename().string();
+  run.device = device.name;
+  run.driver = device.driver;
+  run.preset = named.preset;
+  run.camera = camera;
+  run.settings = settings;
+  run.frames = static_cast<uint32_t>(frames.size());
+  run.stats = medians(frames);
+  run.image = options.output.filename().string();
+  write_picture(options.output, renderer.read_back());
+  if (!options.stats.empty()) write_file(options.stats, to_json(run).dump(2) + "\n");
+  fmt::print(stderr, "{}: {}x{}, {}, {} lights, {} shadow maps, {:.1f} ms (median of {}) on {}\n",
+             options.output.string(), settings.width, settings.height, named.preset, run.stats.lights,
+             run.stats.shadow_maps, run.stats.frame_ms, run.frames, run.device);
+}
+
+}  // namespace chandelier::player

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws into a file, with no display.
+#pragma once
+
+#include "player/camera.h"
+#include "player/options.h"
+
+namespace chandelier::player {
+
+/// Draws options.frames timed frames after warming up, writes the last one and, where asked, the stats. Throws.
+void run_headless(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer);
+
+}  // namespace chandelier::player

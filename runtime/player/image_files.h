@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures as files: PNG as shown, EXR and PFM as linear radiance. A file appears whole or not at all.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "frame/renderer.h"
+
+namespace chandelier::player {
+
+enum class ImageKind { png, exr, pfm };
+
+/// By extension, any case; nothing where this build cannot write it.
+std::optional<ImageKind> image_kind(const std::filesystem::path& path);
+/// ".png, .exr or .pfm": what image_kind() knows.
+std::string image_kinds_text();
+
+/// Writes it as its extension says. Throws std::runtime_error, one line.
+void write_picture(const std::filesystem::path& path, const Picture& picture);
+/// `rgb` holds 8 bits a channel, rows from the top.
+void write_png(const std::filesystem::path& path, uint32_t width, uint32_t height, std::span<const uint8_t> rgb);
+
+/// Writes beside `path` and renames over it, so that a failure leaves nothing and an older file stays; what is not a
+/// regular file (/dev/stdout) is written in place. Throws std::runtime_error, one line.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+/// Throws std::runtime_error where write_file() could not make `path`, before any time is spent on what goes there.
+void check_writable(const std::filesystem::path& path);
+
+}  // namespace chandelier::player

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// chandelier-play: draws a pack in a window, into a picture, or with two presets side by side.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "player/camera.h"
+#include "player/compare.h"
+#include "player/headless.h"
+#include "player/image_files.h"
+#include "player/options.h"
+#ifndef CHANDELIER_PORTABLE
+#include "player/window.h"
+#endif
+
+namespace {
+
+using namespace chandelier;
+using namespace chandelier::player;
+
+int list_devices() {
+  const auto devices = gpu::list_devices();
+  for (std::size_t i = 0; i < devices.size(); ++i)
+    fmt::print("{}  {} ({}){}\n", i, devices[i].name, devices[i].driver,
+               devices[i].unfit.empty() ? "" : ": cannot be used, " + devices[i].unfit);
+  return 0;
+}
+
+int report_validation(const Options& options, const gpu::Device& device) {
+  if (!options.validation) return 0;
+  for (const std::string& message : device.validation_messages())
+    fmt::print(stderr, "chandelier-play: validation: {}\n", message);
+  fmt::print(stderr, "chandelier-play: {} messages from the validation layer\n", device.validation_messages().size());
+  return device.validation_messages().empty() ? 0 : 1;
+}
+
+int run(const Options& options) {
+  if (options.mode == Mode::list_devices) return list_devices();
+  if (options.mode == Mode::headless) check_writable(options.output);
+  if (!options.stats.empty()) check_writable(options.stats);
+  const pack::File pack(options.pack);
+  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+  const NamedCamera camera =
+      options.camera ? NamedCamera{"", *options.camera} : choose_camera(pack, options.camera_name, aspect);
+  gpu::DeviceOptions device_options;
+  device_options.device = options.device;
+  device_options.validation = options.validation;
+#ifndef CHANDELIER_PORTABLE
+  std::optional<Window> window;
+  if (options.mode == Mode::window) {
+    window.emplace(options);
+    device_options.instance_extensions = window->instance_extensions();
+    device_options.swapchain = true;
+  }
+#endif
+  gpu::Device device(device_options);
+  Renderer renderer(device, pack);
+  if (options.mode == Mode::headless) run_headless(options, camera, device, renderer);
+  if (options.mode == Mode::compare) run_comparison(options, camera, device, renderer);
+#ifndef CHANDELIER_PORTABLE
+  if (window) window->run(options, camera, device, renderer);
+#endif
+  return report_validation(options, device);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Parsed parsed = parse_options({argv + 1, argv + argc});
+    if (parsed.options) return run(*parsed.options);
+    fmt::print(parsed.exit_code == 0 ? stdout : stderr, "{}\n", parsed.text);
+    return parsed.exit_code;
+  } catch (const std::exception& error) {
+    std::string line = error.what();
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    fmt::print(stderr, "chandelier-play: error: {}\n", line);
+    return 1;
+  }
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// What chandelier-play is asked to do: the command line, checked.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame/renderer.h"
+
+namespace chandelier::player {
+
+enum class Mode { list_devices, headless, compare, window };
+
+struct NamedRecipe {
+  std::string preset;
+  Recipe recipe;  // the preset's, with every explicit setting applied
+};
+
+struct Options {
+  Mode mode = Mode::window;
+  std::filesystem::path pack;
+  std::filesystem::path output;      // Mode::headless
+  std::filesystem::path stats;       // Mode::headless; empty: none
+  std::filesystem::path report;      // Mode::compare: a folder
+  std::vector<NamedRecipe> recipes;  // two in Mode::compare, else one
+  uint32_t width = 1280;
+  uint32_t height = 720;
+  std::string camera_name;         // empty: the pack's first
+  std::optional<Camera> camera;    // given by numbers
+  std::optional<uint32_t> frames;  // timed frames; in a window: close after so many
+  std::string device;
+  bool validation = false;
+  float ambient = 0.0f;
+  std::optional<float> exposure_ev;
+};
+
+/// Options, or what to print and the exit status to leave with.
+struct Parsed {
+  std::optional<Options> options;
+  int exit_code = 0;  // 0: help or version, in `text`; 2: usage error, one line in `text`
+  std::string text;
+};
+
+/// `arguments` without the program's name.
+Parsed parse_options(const std::vector<std::string>& arguments);
+
+/// The settings of a frame of `recipe` as these options want it.
+RenderSettings render_settings(const Options& options, const Recipe& recipe, const Camera& camera);
+
+}  // namespace chandelier::player

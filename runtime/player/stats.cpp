@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Medians and JSON of what frames took and did.
+#include "player/stats.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+namespace chandelier::player {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array kCounters{
+    Counter{"lights", &FrameStats::lights, false},
+    Counter{"lights_in_view", &FrameStats::lights_in_view, false},
+    Counter{"light_clusters", &FrameStats::light_clusters, false},
+    Counter{"shadow_maps", &FrameStats::shadow_maps, false},
+    Counter{"shadow_views", &FrameStats::shadow_views, false},
+    Counter{"shadow_triangles", &FrameStats::shadow_triangles, false},
+    Counter{"shadow_draws", &FrameStats::shadow_draws, false},
+    Counter{"shadow_bytes", &FrameStats::shadow_bytes, true},
+    Counter{"shadow_pool_bytes", &FrameStats::shadow_pool_bytes, true},
+    Counter{"shadow_rounds", &FrameStats::shadow_rounds, false},
+    Counter{"visibility_bytes", &FrameStats::visibility_bytes, true},
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+template <typename Get>
+double median_of(std::span<const FrameStats> frames, Get get) {
+  std::vector<double> values;
+  for (const FrameStats& frame : frames) values.push_back(get(frame));
+  return median(std::move(values));
+}
+
+Json camera_json(const NamedCamera& named) {
+  const Camera& camera = named.camera;
+  const auto vec = [](const glm::vec3& v) { return Json{v.x, v.y, v.z}; };
+  return {{"name", named.name},
+          {"eye_ws", vec(camera.eye_ws)},
+          {"forward_ws", vec(camera.forward_ws)},
+          {"up_ws", vec(camera.up_ws)},
+          {"yfov_deg", camera.yfov_rad * 180.0f / std::numbers::pi_v<float>}};
+}
+
+Json recipe_json(const Recipe& recipe) {
+  Json json = Json::object();
+  const auto stages = stage_choices();
+  for (std::size_t i = 0; i < stages.size(); ++i) json[std::string(stages[i].stage)] = answer(recipe, i);
+  json["settings"] = {{"d_init_m", recipe.d_init_m},
+                      {"z_far_m", recipe.z_far_m},
+                      {"distance_scaling", distance_scaling_names()[static_cast<std::size_t>(recipe.distance_scaling)]},
+                      {"face_size_px", recipe.face_size_px},
+                      {"shadow_budget_bytes", recipe.shadow_budget_bytes}};
+  return json;
+}
+
+}  // namespace
+
+std::span<const Counter> counters() {
+  return kCounters;
+}
+
+FrameStats medians(std::span<const FrameStats> frames) {
+  FrameStats result = frames.back();
+  result.frame_ms = median_of(frames, [](const FrameStats& f) { return f.frame_ms; });
+  for (std::size_t i = 0; i < result.stages.size(); ++i) {
+    result.stages[i].gpu_ms = median_of(frames, [i](const FrameStats& f) { return f.stages.at(i).gpu_ms; });
+    result.stages[i].cpu_ms = median_of(frames, [i](const FrameStats& f) { return f.stages.at(i).cpu_ms; });
+  }
+  return result;
+}
+
+Json to_json(const Run& run) {
+  Json stages = Json::array();
+  for (const StageTime& stage : run.stats.stages)
+    stages.push_back({{"name", stage.name}, {"gpu_ms", stage.gpu_ms}, {"cpu_ms", stage.cpu_ms}});
+  Json counts = Json::object();
+  for (const Counter& counter : counters()) counts[std::string(counter.name)] = run.stats.*counter.value;
+  Json json = {{"pack", run.pack},
+               {"device", run.device},
+               {"driver", run.driver},
+               {"size", {{"width", run.settings.width}, {"height", run.settings.height}}},
+               {"camera", camera_json(run.camera)},
+               {"preset", run.preset},
+               {"recipe", recipe_json(run.settings.recipe)},
+               {"ambient", run.settings.ambient},
+               {"exposure_ev", run.stats.exposure_ev},
+               {"frames", run.frames},
+               {"frame_ms", run.stats.frame_ms},
+               {"stages", std::move(stages)},
+               {"counters", std::move(counts)}};
+  if (!run.image.empty()) json["image"] = run.image;
+  if (!run.radiance.empty()) json["radiance"] = run.radiance;
+  return json;
+}
+
+}  // namespace chandelier::player

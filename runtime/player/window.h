@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// A plain window with a fly camera.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "player/camera.h"
+#include "player/options.h"
+
+namespace chandelier::player {
+
+class Window {
+ public:
+  /// Throws std::runtime_error where there is no display.
+  explicit Window(const Options& options);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// What the Vulkan instance must have to show pictures here.
+  std::vector<const char*> instance_extensions() const;
+  /// Draws until the window is closed, Esc is pressed, a signal asks to end, or options.frames are drawn. Throws.
+  void run(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chandelier::player
