@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bake: scene in, pack out.
+#pragma once
+
+#include "../progress.h"
+#include "../scene.h"
+#include "pack_schema.h"
+
+namespace chandelier::baker {
+
+struct BakeSettings {
+  std::uint32_t batch_triangles = 100;  // most in a batch; a multiple of 4, up to 512
+  float range_threshold_lx = 0.05f;     // where a light without a range of its own ends
+};
+
+/// Runs all passes. Same scene and settings, same contents, whatever the number of threads. Throws Error.
+pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress);
+
+}  // namespace chandelier::baker

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batches: welded, with tangents, cut by meshoptimizer, concatenated in the order of meshes and primitives.
+#include "batches.h"
+
+#include <meshoptimizer.h>
+#include <tbb/parallel_for.h>
+
+#include "../error.h"
+#include "tangents.h"
+#include "weld.h"
+
+namespace chandelier::baker {
+namespace {
+
+/// Triangles in the order of their batches.
+struct CutPrimitive {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> triangle_counts;  // of each batch
+  std::uint32_t material = 0;
+};
+
+constexpr std::size_t kBatchVertices = 255;  // meshoptimizer's limit
+
+CutPrimitive cut(Primitive&& primitive, std::size_t batch_triangles) {
+  weld(primitive);
+  if (primitive.needs_tangents) make_tangents(primitive);
+  CutPrimitive out;
+  out.material = primitive.material;
+  if (primitive.indices.empty()) return out;
+  std::vector<std::uint32_t> indices(primitive.indices.size());
+  meshopt_optimizeVertexCache(indices.data(), primitive.indices.data(), indices.size(), primitive.vertices.size());
+
+  const std::size_t bound = meshopt_buildMeshletsBound(indices.size(), kBatchVertices, batch_triangles);
+  std::vector<meshopt_Meshlet> meshlets(bound);
+  std::vector<std::uint32_t> vertices(bound * kBatchVertices);
+  std::vector<std::uint8_t> corners(bound * batch_triangles * 3);
+  meshlets.resize(meshopt_buildMeshlets(meshlets.data(), vertices.data(), corners.data(), indices.data(),
+                                        indices.size(), &primitive.vertices[0].position_ls.x, primitive.vertices.size(),
+                                        sizeof(Vertex), kBatchVertices, batch_triangles, 0.0f));
+  for (const meshopt_Meshlet& meshlet : meshlets) {
+    for (std::size_t i = 0; i < std::size_t{meshlet.triangle_count} * 3; ++i) {
+      out.indices.push_back(vertices[meshlet.vertex_offset + corners[meshlet.triangle_offset + i]]);
+    }
+    out.triangle_counts.push_back(meshlet.triangle_count);
+  }
+  out.vertices.resize(primitive.vertices.size());
+  out.vertices.resize(meshopt_optimizeVertexFetch(out.vertices.data(), out.indices.data(), out.indices.size(),
+                                                  primitive.vertices.data(), primitive.vertices.size(),
+                                                  sizeof(Vertex)));
+  return out;
+}
+
+void append_vertices(const std::vector<Vertex>& vertices, pack::Contents& pack) {
+  for (const Vertex& vertex : vertices) {
+    pack.positions.push_back({vertex.position_ls});
+    pack.vertex_attributes.push_back({vertex.normal_ls, vertex.tangent_ls, vertex.uv0, vertex.uv1, vertex.color});
+  }
+}
+
+/// Appends a primitive's batches; its vertices start at `first_vertex` in the pack.
+void append_batches(const CutPrimitive& cut, std::uint32_t first_vertex, bool mirrored, pack::Contents& pack) {
+  const std::uint32_t* corner = cut.indices.data();
+  for (const std::uint32_t triangles : cut.triangle_counts) {
+    pack::Batch batch;
+    batch.material = cut.material;
+    batch.first_index = static_cast<std::uint32_t>(pack.indices.size());
+    batch.index_count = triangles * 3;
+    batch.bounds_min_ls = batch.bounds_max_ls = cut.vertices[*corner].position_ls;
+    for (std::uint32_t t = 0; t < triangles; ++t, corner += 3) {
+      for (const int c : {0, mirrored ? 2 : 1, mirrored ? 1 : 2}) {
+        const glm::vec3& position = cut.vertices[corner[c]].position_ls;
+        batch.bounds_min_ls = glm::min(batch.bounds_min_ls, position);
+        batch.bounds_max_ls = glm::max(batch.bounds_max_ls, position);
+        pack.indices.push_back({first_vertex + corner[c]});
+      }
+    }
+    pack.batches.push_back(batch);
+  }
+}
+
+struct MeshUse {
+  bool plain = false;
+  bool mirrored = false;
+};
+
+std::vector<MeshUse> mesh_uses(const Scene& scene) {
+  std::vector<MeshUse> uses(scene.meshes.size());
+  for (const MeshInstance& instance : scene.instances) {
+    (is_mirrored(instance) ? uses[instance.mesh].mirrored : uses[instance.mesh].plain) = true;
+  }
+  return uses;
+}
+
+}  // namespace
+
+bool is_mirrored(const MeshInstance& instance) {
+  return glm::determinant(glm::dmat3(instance.world_from_local)) < 0;
+}
+
+std::vector<MeshBatches> make_batches(Scene& scene, std::uint32_t batch_triangles, const Progress& progress,
+                                      pack::Contents& pack) {
+  std::vector<Primitive*> primitives;
+  for (Mesh& mesh : scene.meshes) {
+    for (Primitive& primitive : mesh.primitives) primitives.push_back(&primitive);
+  }
+  progress.next("cutting " + std::to_string(primitives.size()) + " primitives into batches");
+  std::vector<CutPrimitive> cuts(primitives.size());
+  tbb::parallel_for(std::size_t{0}, primitives.size(),
+                    [&](std::size_t i) { cuts[i] = cut(std::move(*primitives[i]), batch_triangles); });
+
+  const std::vector<MeshUse> uses = mesh_uses(scene);
+  std::vector<MeshBatches> out(scene.meshes.size());
+  std::size_t next = 0;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const std::size_t first_cut = next;
+    std::vector<std::uint32_t> first_vertices;
+    for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p, ++next) {
+      first_vertices.push_back(static_cast<std::uint32_t>(pack.positions.size()));
+      append_vertices(cuts[next].vertices, pack);
+      fit_u32(pack.positions.size(), "vertices");
+    }
+    for (const bool mirrored : {false, true}) {
+      if (!(mirrored ? uses[m].mirrored : uses[m].plain)) continue;
+      BatchRange& range = mirrored ? out[m].mirrored : out[m].plain;
+      range.first = static_cast<std::uint32_t>(pack.batches.size());
+      for (std::size_t i = first_cut; i < next; ++i) {
+        fit_u32(pack.indices.size() + cuts[i].indices.size(), "triangle corners");
+        append_batches(cuts[i], first_vertices[i - first_cut], mirrored, pack);
+      }
+      range.count = fit_u32(pack.batches.size(), "batches") - range.first;
+    }
+    for (std::size_t i = first_cut; i < next; ++i) cuts[i] = {};
+  }
+  return out;
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Decodes with OpenImageIO, in parallel; the result does not depend on the number of threads.
+#include "images.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "../error.h"
+
+namespace chandelier::baker {
+namespace {
+
+/// A file name for OpenImageIO to choose its reader by.
+const char* name_by_content(const EncodedImage& image) {
+  static constexpr std::uint8_t kPng[] = {0x89, 'P', 'N', 'G'}, kJpeg[] = {0xFF, 0xD8, 0xFF};
+  const auto starts = [&](std::span<const std::uint8_t> magic) {
+    return image.bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), image.bytes.begin());
+  };
+  if (starts(kPng)) return "image.png";
+  if (starts(kJpeg)) return "image.jpg";
+  fail(image.where, "is neither PNG nor JPEG (" + std::to_string(image.bytes.size()) + " bytes)");
+}
+
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  return text.substr(0, 200);
+}
+
+/// RGBA from 1 to 4 channels; one or two are grey, or grey and alpha.
+std::vector<std::uint8_t> to_rgba(const std::vector<std::uint8_t>& in, std::size_t texels, std::size_t channels) {
+  if (channels == 4) return in;
+  std::vector<std::uint8_t> out(4 * texels, 255);
+  for (std::size_t i = 0; i < texels; ++i) {
+    const std::uint8_t* from = in.data() + i * channels;
+    for (std::size_t c = 0; c < 3; ++c) out[4 * i + c] = channels < 3 ? from[0] : from[c];
+    if (channels == 2) out[4 * i + 3] = from[1];
+  }
+  return out;
+}
+
+struct Made {
+  Texels size;  // without texels
+  std::vector<std::uint8_t> bytes;
+  std::string error;
+};
+
+Made make_image(const EncodedImage& image, ImageUse use) {
+  Made made;
+  try {
+    Texels texels = decode_image(image);
+    made.size = {texels.width, texels.height, {}};
+    made.bytes = mip_chain(std::move(texels), use);
+  } catch (const Error& error) {
+    made.error = error.what();  // kept, so that the first in order is told, not the first in time
+  }
+  return made;
+}
+
+}  // namespace
+
+Texels decode_image(const EncodedImage& image) {
+  const char* name = name_by_content(image);
+  OIIO::ImageSpec hints;
+  hints.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not premultiplied
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(image.bytes.data()), image.bytes.size());
+  void* proxy = &memory;  // among the hints: the JPEG reader forgets open()'s own argument
+  hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  const auto input = OIIO::ImageInput::open(name, &hints, &memory);
+  if (!input) fail(image.where, "cannot be decoded: " + one_line(OIIO::geterror()));
+  input->threads(1);  // images are decoded side by side already
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.width < 1 || spec.height < 1 || spec.width > int{pack::max_image_size} ||
+      spec.height > int{pack::max_image_size}) {
+    fail(image.where, "size is out of range, 1 to " + std::to_string(pack::max_image_size) + " (" +
+                          std::to_string(spec.width) + "x" + std::to_string(spec.height) + ")");
+  }
+  if (spec.nchannels < 1 || spec.nchannels > 4) {
+    fail(image.where, "cannot be decoded: not 1 to 4 channels (" + std::to_string(spec.nchannels) + ")");
+  }
+  const std::size_t texels = std::size_t(spec.width) * std::size_t(spec.height);
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  std::vector<std::uint8_t> bytes(texels * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, bytes.data())) {
+    fail(image.where, "cannot be decoded: " + one_line(input->geterror()));
+  }
+  return {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
+          to_rgba(bytes, texels, channels)};
+}
+
+void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const Progress& progress, Strings& strings,
+                 pack::Contents& pack) {
+  if (!requests.empty()) progress.next("decoding " + std::to_string(requests.size()) + " images");
+  std::vector<Made> made(requests.size());
+  tbb::parallel_for(std::size_t{0}, requests.size(),
+                    [&](std::size_t i) { made[i] = make_image(scene.images[requests[i].image], requests[i].use); });
+  std::size_t bytes = 0;
+  for (const Made& each : made) {
+    if (!each.error.empty()) throw Error(each.error);
+    bytes += (each.bytes.size() + 15) / 16 * 16;
+  }
+  pack.image_data.reserve(bytes);
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    pack::Image image;
+    image.first_byte = pack.image_data.size();
+    image.size_bytes = made[i].bytes.size();
+    image.width = made[i].size.width;
+    image.height = made[i].size.height;
+    image.level_count = mip_level_count(image.width, image.height);
+    image.format = requests[i].use == ImageUse::color ? pack::ImageFormat::rgba8_srgb : pack::ImageFormat::rgba8_unorm;
+    image.name = strings.add(scene.images[requests[i].image].name);
+    pack.images.push_back(image);
+    const auto* data = reinterpret_cast<const std::byte*>(made[i].bytes.data());
+    pack.image_data.insert(pack.image_data.end(), data, data + made[i].bytes.size());
+    pack.image_data.resize((pack.image_data.size() + 15) / 16 * 16);
+    made[i].bytes = {};
+  }
+  for (EncodedImage& image : scene.images) image.bytes = {};
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Instances and batch instances; boxes from the batches' own vertices, so that rotation does not widen them.
+#include "instances.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "../error.h"
+
+namespace chandelier::baker {
+namespace {
+
+pack::Instance instance_record(const MeshInstance& instance, Strings& strings) {
+  pack::Instance out;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      out.world_from_local[row][column] = static_cast<float>(instance.world_from_local[column][row]);
+    }
+  }
+  out.name = strings.add(instance.name);
+  return out;
+}
+
+/// With the matrix as the pack has it, not as it was before rounding.
+glm::dvec3 to_world(const pack::Instance& instance, const glm::vec3& local) {
+  const glm::dvec4 p(local, 1);
+  return {glm::dot(glm::dvec4(instance.world_from_local[0]), p), glm::dot(glm::dvec4(instance.world_from_local[1]), p),
+          glm::dot(glm::dvec4(instance.world_from_local[2]), p)};
+}
+
+void set_bounds(const pack::Contents& pack, pack::BatchInstance& record) {
+  const pack::Batch& batch = pack.batches[record.batch];
+  const pack::Instance& instance = pack.instances[record.instance];
+  glm::dvec3 low(INFINITY), high(-INFINITY);
+  for (std::uint32_t i = 0; i < batch.index_count; ++i) {
+    const glm::dvec3 p = to_world(instance, pack.positions[pack.indices[batch.first_index + i].vertex].position_ls);
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  record.bounds_min_ws = glm::vec3(low);
+  record.bounds_max_ws = glm::vec3(high);
+}
+
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Sorting key: opaque before masked, then material; the rest only for a fixed order.
+auto draw_order(const pack::Contents& pack, const pack::BatchInstance& record) {
+  const std::uint32_t material = pack.batches[record.batch].material;
+  return std::tuple(pack.materials[material].alpha_mode, material, record.instance, record.batch);
+}
+
+}  // namespace
+
+void make_instances(const Scene& scene, const std::vector<MeshBatches>& meshes, Strings& strings,
+                    pack::Contents& pack) {
+  std::vector<const MeshInstance*> sources;
+  for (const MeshInstance& instance : scene.instances) {
+    const MeshBatches& mesh = meshes[instance.mesh];
+    const BatchRange range = is_mirrored(instance) ? mesh.mirrored : mesh.plain;
+    if (range.count == 0) continue;
+    const std::uint32_t number = fit_u32(pack.instances.size(), "instances");
+    pack.instances.push_back(instance_record(instance, strings));
+    sources.push_back(&instance);
+    fit_u32(std::uint64_t{pack.batch_instances.size()} + range.count, "batches in instances");
+    for (std::uint32_t b = 0; b < range.count; ++b) {
+      pack.batch_instances.push_back({.batch = range.first + b, .instance = number});
+    }
+  }
+  tbb::parallel_for(std::size_t{0}, pack.batch_instances.size(),
+                    [&](std::size_t i) { set_bounds(pack, pack.batch_instances[i]); });
+  for (const pack::BatchInstance& record : pack.batch_instances) {
+    if (!is_finite(record.bounds_min_ws) || !is_finite(record.bounds_max_ws)) {
+      fail(sources[record.instance]->where, "its place in the world is not finite");
+    }
+  }
+  std::sort(pack.batch_instances.begin(), pack.batch_instances.end(),
+            [&](const auto& a, const auto& b) { return draw_order(pack, a) < draw_order(pack, b); });
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pass: lights with a range each, and cameras.
+#pragma once
+
+#include "../scene.h"
+#include "pack_schema.h"
+#include "strings.h"
+
+namespace chandelier::baker {
+
+/// The distance at which the light's illuminance, falling with its square, is `threshold_lx`.
+float derived_range_m(float intensity_cd, const glm::vec3& color, float threshold_lx);
+
+void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings, pack::Contents& pack);
+void make_cameras(const Scene& scene, Strings& strings, pack::Contents& pack);
+
+}  // namespace chandelier::baker

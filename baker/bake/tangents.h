@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pass: tangents for normal maps, from positions and texture coordinates.
+#pragma once
+
+#include "../scene.h"
+
+namespace chandelier::baker {
+
+/// Replaces all tangents of a welded primitive. A vertex between mirrored and plain texture coordinates becomes two.
+void make_tangents(Primitive& primitive);
+
+}  // namespace chandelier::baker

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF primitives to triangle lists.
+#pragma once
+
+#include <optional>
+
+#include "../scene.h"
+#include "gltf.h"
+
+namespace chandelier::baker {
+
+/// The triangles of a primitive, or nothing where it has none (points, lines, no positions). The material is left to
+/// the caller. Throws Error.
+std::optional<Primitive> read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive, Warnings& warnings);
+
+/// A triangle list from any glTF mode; `corners` are the primitive's vertices in drawing order.
+std::vector<std::uint32_t> triangle_list(int mode, const std::vector<std::uint32_t>& corners);
+
+/// Gives each triangle vertices of its own and its flat normal: what glTF asks for where normals are missing.
+void make_flat(Primitive& primitive);
+
+}  // namespace chandelier::baker

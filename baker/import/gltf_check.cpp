@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks the JSON of a glTF before anything trusts it: types, ranges, references, node tree.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "gltf.h"
+
+namespace chandelier::baker {
+namespace {
+
+enum class Need { optional, required };
+
+std::string shown(const Json& value) {
+  std::string text = value.dump(-1, ' ', true);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+std::size_t section_size(const Json& json, const char* section) {
+  const auto it = json.find(section);
+  return it != json.end() && it->is_array() ? it->size() : 0;
+}
+
+/// One JSON object and where it is; each member function checks one of its keys.
+struct Object {
+  const Json& json;  // the object
+  std::string where;
+
+  [[noreturn]] void bad(const char* key, const std::string& what, const Json& value) const {
+    fail(where + ", " + key, what + " (" + shown(value) + ")");
+  }
+
+  const Json* find(const char* key, Need need) const {
+    const auto it = json.find(key);
+    if (it != json.end()) return &*it;
+    if (need == Need::required) fail(where, std::string("has no ") + key);
+    return nullptr;
+  }
+
+  void text(const char* key, Need need = Need::optional) const {
+    const Json* value = find(key, need);
+    if (value && !value->is_string()) bad(key, "is not a string", *value);
+  }
+
+  void boolean(const char* key) const {
+    const Json* value = find(key, Need::optional);
+    if (value && !value->is_boolean()) bad(key, "is not true or false", *value);
+  }
+
+  void integer(const char* key, std::uint64_t least, std::uint64_t most, Need need = Need::optional) const {
+    const Json* value = find(key, need);
+    if (!value) return;
+    if (!value->is_number_unsigned()) bad(key, "is not a whole number", *value);
+    const auto number = value->get<std::uint64_t>();
+    if (number < least || number > most) bad(key, "is out of range", *value);
+  }
+
+  void number(const char* key, double least, double most, Need need = Need::optional) const {
+    const Json* value = find(key, need);
+    if (value) check_number(key, *value, least, most);
+  }
+
+  void numbers(const char* key, std::size_t count, double least, double most) const {
+    const Json* value = find(key, Need::optional);
+    if (!value) return;
+    if (!value->is_array() || value->size() != count) {
+      bad(key, "is not an array of " + std::to_string(count) + " numbers", *value);
+    }
+    for (const Json& each : *value) check_number(key, each, least, most);
+  }
+
+  void check_number(const char* key, const Json& value, double least, double most) const {
+    if (!value.is_number()) bad(key, "is not a number", value);
+    const double number = value.get<double>();
+    if (!(number >= least && number <= most)) bad(key, "is out of range", value);
+  }
+
+  void index(const char* key, std::size_t count, Need need = Need::optional) const {
+    const Json* value = find(key, need);
+    if (value) check_index(key, *value, count);
+  }
+
+  void indices(const char* key, std::size_t count) const {
+    const Json* value = find(key, Need::optional);
+    if (!value) return;
+    if (!value->is_array()) bad(key, "is not an array", *value);
+    for (const Json& each : *value) check_index(key, each, count);
+  }
+
+  void check_index(const char* key, const Json& value, std::size_t count) const {
+    if (!value.is_number_unsigned()) bad(key, "is not an index", value);
+    if (value.get<std::uint64_t>() >= count) {
+      bad(key, "points past the end, there are " + std::to_string(count), value);
+    }
+  }
+
+  std::optional<Object> object(const char* key, Need need = Need::optional) const {
+    const Json* value = find(key, need);
+    if (!value) return std::nullopt;
+    if (!value->is_object()) bad(key, "is not an object", *value);
+    return Object{*value, where + ", " + key};
+  }
+
+  /// This object's data of an extension.
+  std::optional<Object> extension(const char* name) const {
+    const auto all = object("extensions");
+    return all ? all->object(name) : std::nullopt;
+  }
+};
+
+constexpr double kBig = 3e38;  // every number must fit a float
+constexpr std::uint64_t kMostBytes = 1ull << 53;
+constexpr std::uint64_t kMostInt = 0x7FFFFFFF;
+
+void check_buffer(const Json&, const Object& buffer) {
+  buffer.integer("byteLength", 0, kMostBytes, Need::required);
+  buffer.text("uri");
+}
+
+void check_buffer_view(const Json& root, const Object& view) {
+  view.index("buffer", section_size(root, "buffers"), Need::required);
+  view.integer("byteOffset", 0, kMostBytes);
+  view.integer("byteLength", 0, kMostBytes, Need::required);
+  view.integer("byteStride", 4, 252);
+  const Json* stride = view.find("byteStride", Need::optional);
+  if (stride && stride->get<std::uint64_t>() % 4 != 0) view.bad("byteStride", "is not a multiple of 4", *stride);
+}
+
+void check_component_type(const Object& object) {
+  object.integer("componentType", 5120, 5126, Need::required);
+  if (object.json["componentType"] == 5124) object.bad("componentType", "is not a glTF type", 5124);
+}
+
+void check_accessor(const Json& root, const Object& accessor) {
+  const std::size_t views = section_size(root, "bufferViews");
+  accessor.index("bufferView", views);
+  accessor.integer("byteOffset", 0, kMostBytes);
+  check_component_type(accessor);
+  accessor.boolean("normalized");
+  accessor.integer("count", 0, 0xFFFFFFFEu, Need::required);
+  accessor.text("type", Need::required);
+  static const char* const kTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+  const auto& type = accessor.json["type"].get_ref<const std::string&>();
+  if (std::find(std::begin(kTypes), std::end(kTypes), type) == std::end(kTypes)) {
+    accessor.bad("type", "is not a glTF type", type);
+  }
+  const auto sparse = accessor.object("sparse");
+  if (!sparse) return;
+  sparse->integer("count", 0, kMostInt, Need::required);
+  const auto indices = sparse->object("indices", Need::required);
+  indices->index("bufferView", views, Need::required);
+  indices->integer("byteOffset", 0, kMostInt);
+  check_component_type(*indices);
+  const auto values = sparse->object("values", Need::required);
+  values->index("bufferView", views, Need::required);
+  values->integer("byteOffset", 0, kMostInt);
+}
+
+void check_mesh(const Json& root, const Object& mesh) {
+  const Json* primitives = mesh.find("primitives", Need::required);
+  if (!primitives->is_array()) mesh.bad("primitives", "is not an array", *primitives);
+  const std::size_t accessors = section_size(root, "accessors");
+  for (std::size_t i = 0; i < primitives->size(); ++i) {
+    const Object primitive{(*primitives)[i], mesh.where + ", primitive " + std::to_string(i)};
+    if (!primitive.json.is_object()) fail(primitive.where, "is not an object (" + shown(primitive.json) + ")");
+    primitive.integer("mode", 0, 6);
+    primitive.index("material", section_size(root, "materials"));
+    primitive.index("indices", accessors);
+    const auto attributes = primitive.object("attributes", Need::required);
+    for (const auto& [name, value] : attributes->json.items()) {
+      primitive.check_index(("attribute " + name).c_str(), value, accessors);
+    }
+  }
+}
+
+void check_node(const Json& root, const Object& node) {
+  node.index("mesh", section_size(root, "meshes"));
+  node.index("camera", section_size(root, "cameras"));
+  node.index("skin", section_size(root, "skins"));
+  node.indices("children", section_size(root, "nodes"));
+  node.numbers("matrix", 16, -kBig, kBig);
+  node.numbers("translation", 3, -kBig, kBig);
+  node.numbers("rotation", 4, -kBig, kBig);
+  node.numbers("scale", 3, -kBig, kBig);
+  const auto light = node.extension("KHR_lights_punctual");
+  if (!light) return;
+  const auto extensions = root.find("extensions");
+  const Json empty = Json::object();
+  const Json& lights =
+      extensions != root.end() && extensions->is_object() && extensions->contains("KHR_lights_punctual")
+          ? (*extensions)["KHR_lights_punctual"]
+          : empty;
+  light->index("light", lights.is_object() ? section_size(lights, "lights") : 0, Need::required);
+}
+
+void check_texture_use(const Json& root, const Object& owner, const char* key, const char* strength) {
+  const auto use = owner.object(key);
+  if (!use) return;
+  use->index("index", section_size(root, "textures"), Need::required);
+  use->integer("texCoord", 0, kMostInt);
+  if (strength) use->number(strength, -kBig, kBig);
+}
+
+void check_material(const Json& root, const Object& material) {
+  if (const auto pbr = material.object("pbrMetallicRoughness")) {
+    pbr->numbers("baseColorFactor", 4, 0, 1);
+    pbr->number("metallicFactor", 0, 1);
+    pbr->number("roughnessFactor", 0, 1);
+    check_texture_use(root, *pbr, "baseColorTexture", nullptr);
+    check_texture_use(root, *pbr, "metallicRoughnessTexture", nullptr);
+  }
+  check_texture_use(root, material, "normalTexture", "scale");
+  check_texture_use(root, material, "occlusionTexture", "strength");
+  check_texture_use(root, material, "emissiveTexture", nullptr);
+  material.numbers("emissiveFactor", 3, 0, kBig);
+  material.text("alphaMode");
+  material.number("alphaCutoff", 0, kBig);
+  material.boolean("doubleSided");
+  if (const auto strength = material.extension("KHR_materials_emissive_strength")) {
+    strength->number("emissiveStrength", 0, kBig);
+  }
+}
+
+void check_texture(const Json& root, const Object& texture) {
+  texture.index("source", section_size(root, "images"));
+  texture.index("sampler", section_size(root, "samplers"));
+}
+
+void check_sampler(const Json&, const Object& sampler) {
+  for (const char* key : {"magFilter", "minFilter", "wrapS", "wrapT"}) sampler.integer(key, 0, 65535);
+}
+
+void check_image(const Json& root, const Object& image) {
+  image.text("uri");
+  image.text("mimeType");
+  image.index("bufferView", section_size(root, "bufferViews"));
+}
+
+void check_camera(const Json&, const Object& camera) {
+  camera.text("type", Need::required);
+  if (camera.json["type"] != "perspective") return;
+  const auto perspective = camera.object("perspective", Need::required);
+  perspective->number("yfov", 1e-4, 3.1, Need::required);
+  perspective->number("znear", 0, kBig, Need::required);
+  perspective->number("zfar", 0, kBig);
+  perspective->number("aspectRatio", 1e-6, 1e6);
+}
+
+void check_light(const Json&, const Object& light) {
+  light.text("type", Need::required);
+  light.text("name");
+  light.numbers("color", 3, 0, kBig);
+  light.number("intensity", 0, kBig);
+  light.number("range", 1e-12, kBig);
+  const Json& type = light.json["type"];
+  if (type != "point" && type != "spot" && type != "directional") light.bad("type", "is not a light type", type);
+  if (type != "spot") return;
+  const auto spot = light.object("spot", Need::required);
+  constexpr double kHalfPi = 1.5708;
+  spot->number("innerConeAngle", 0, kHalfPi);
+  spot->number("outerConeAngle", 1e-6, kHalfPi);
+  if (spot->json.value("innerConeAngle", 0.0) > spot->json.value("outerConeAngle", 0.7853981633974483)) {
+    spot->bad("innerConeAngle", "is wider than the outer cone", spot->json["innerConeAngle"]);
+  }
+}
+
+void check_scene(const Json& root, const Object& scene) {
+  scene.indices("nodes", section_size(root, "nodes"));
+}
+
+/// Each entry of a section is an object and passes `check`.
+void check_section(const Json& root, const Json& owner, const char* section, const std::string& file,
+                   void (*check)(const Json&, const Object&)) {
+  const auto it = owner.find(section);
+  if (it == owner.end()) return;
+  if (!it->is_array()) fail(file + ": " + section, "is not an array (" + shown(*it) + ")");
+  for (std::size_t i = 0; i < it->size(); ++i) {
+    if (!(*it)[i].is_object())
+      fail(file + ": " + place(owner, section, i), "is not an object (" + shown((*it)[i]) + ")");
+    const Object object{(*it)[i], file + ": " + place(owner, section, i)};
+    object.text("name");
+    check(root, object);
+  }
+}
+
+/// glTF nodes are strict trees: at most one parent each, no cycle.
+void check_tree(const Json& json, const std::string& file) {
+  const std::size_t count = section_size(json, "nodes");
+  std::vector<std::size_t> parent(count, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto children = json["nodes"][i].find("children");
+    if (children == json["nodes"][i].end()) continue;
+    for (const Json& child : *children) {
+      const auto c = child.get<std::size_t>();
+      if (parent[c] != count) {
+        fail(file + ": " + place(json, "nodes", c),
+             "has two parents (" + std::to_string(parent[c]) + " and " + std::to_string(i) + ")");
+      }
+      parent[c] = i;
+    }
+  }
+  std::vector<std::uint8_t> clear(count, 0);  // its way up to a root is known to end
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<std::size_t> way;
+    std::size_t at = i;
+    for (; at != count && !clear[at]; at = parent[at]) {
+      way.push_back(at);
+      if (way.size() > count) fail(file + ": " + place(json, "nodes", i), "is below itself (a cycle of nodes)");
+    }
+    for (std::size_t each : way) clear[each] = 1;
+  }
+}
+
+}  // namespace
+
+std::string place(const Json& json, const char* section, std::size_t index) {
+  static const std::pair<const char*, const char*> kSingular[] = {{"meshes", "mesh"}, {"bufferViews", "buffer view"}};
+  std::string out = std::string(section).substr(0, std::string(section).size() - 1);
+  for (const auto& [plural, singular] : kSingular) {
+    if (std::string(section) == plural) out = singular;
+  }
+  out += " " + std::to_string(index);
+  const auto all = json.find(section);
+  if (all == json.end() || !all->is_array() || index >= all->size() || !(*all)[index].is_object()) return out;
+  const auto name = (*all)[index].find("name");
+  if (name == (*all)[index].end() || !name->is_string() || name->get_ref<const std::string&>().empty()) return out;
+  std::string text = name->get_ref<const std::string&>().substr(0, 80);
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';  // a message is one line
+  }
+  return out + " '" + text + "'";
+}
+
+void check_gltf(const Json& json, const std::string& file) {
+  if (!json.is_object()) fail(file, "is not a glTF: the JSON is not an object");
+  const Object root{json, file + ": glTF"};
+  const auto asset = root.object("asset", Need::required);
+  asset->text("version", Need::required);
+  const std::string version = asset->json["version"].get<std::string>();
+  if (version.rfind("2.", 0) != 0) asset->bad("version", "is not 2.x", asset->json["version"]);
+  check_section(json, json, "buffers", file, check_buffer);
+  check_section(json, json, "bufferViews", file, check_buffer_view);
+  check_section(json, json, "accessors", file, check_accessor);
+  check_section(json, json, "images", file, check_image);
+  check_section(json, json, "samplers", file, check_sampler);
+  check_section(json, json, "textures", file, check_texture);
+  check_section(json, json, "materials", file, check_material);
+  check_section(json, json, "meshes", file, check_mesh);
+  check_section(json, json, "cameras", file, check_camera);
+  if (const auto lights = root.extension("KHR_lights_punctual")) {
+    check_section(json, lights->json, "lights", file, check_light);
+  }
+  check_section(json, json, "nodes", file, check_node);
+  check_section(json, json, "scenes", file, check_scene);
+  root.index("scene", section_size(json, "scenes"));
+  check_tree(json, file);
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Appends one glTF file to the scene: nodes, and what they use of meshes and materials.
+#include "import.h"
+
+#include "geometry.h"
+#include "gltf.h"
+#include "materials.h"
+#include "nodes.h"
+
+namespace chandelier::baker {
+namespace {
+
+std::uint32_t add_mesh(const Gltf& gltf, std::size_t index, Materials& materials, Scene& scene, Warnings& warnings) {
+  const tinygltf::Mesh& in = gltf.model.meshes[index];
+  Mesh mesh;
+  mesh.name = in.name;
+  for (std::size_t p = 0; p < in.primitives.size(); ++p) {
+    auto primitive = read_primitive(gltf, index, p, warnings);
+    if (!primitive) continue;
+    primitive->material = materials.use(in.primitives[p].material);
+    const Material& material = scene.materials[primitive->material];
+    primitive->needs_tangents = primitive->needs_tangents && material.normal.texture != kNone;
+    primitive->tangents_from_uv1 = material.normal.uv1;
+    mesh.primitives.push_back(std::move(*primitive));
+  }
+  scene.meshes.push_back(std::move(mesh));
+  return fit_u32(scene.meshes.size() - 1, "meshes");
+}
+
+}  // namespace
+
+void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings) {
+  const Gltf gltf = read_gltf(path, warnings);
+  scene.sources.push_back(path.filename().string());
+  Materials materials(gltf, scene, warnings);
+  std::vector<std::uint32_t> mesh_numbers(gltf.model.meshes.size(), kNone);
+  for (const PlacedNode& placed : place_nodes(gltf)) {
+    const tinygltf::Node& node = gltf.model.nodes[placed.node];
+    const std::string here = place(gltf.json, "nodes", placed.node);
+    add_light(gltf, placed, scene, warnings);
+    add_camera(gltf, placed, scene, warnings);
+    if (node.mesh < 0) continue;
+    if (node.skin >= 0)
+      warnings.add(gltf.file, here, "a skin is ignored: the mesh is baked unposed, where its node is");
+    if (is_degenerate(placed.world_from_local)) {
+      warnings.add(gltf.file, here, "a mesh under zero scale is skipped");
+      continue;
+    }
+    std::uint32_t& mesh = mesh_numbers[static_cast<std::size_t>(node.mesh)];
+    if (mesh == kNone) mesh = add_mesh(gltf, static_cast<std::size_t>(node.mesh), materials, scene, warnings);
+    scene.instances.push_back({node.name, gltf.file + ": " + here, placed.world_from_local, mesh});
+  }
+  materials.warn();
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Node transforms, lights (KHR_lights_punctual) and cameras.
+#include "nodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+namespace chandelier::baker {
+namespace {
+
+glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where) {
+  glm::dmat4 out(1);
+  if (!node.matrix.empty()) {
+    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = node.matrix[i];  // both column-major
+    return out;
+  }
+  if (!node.rotation.empty()) {
+    const auto& r = node.rotation;
+    const glm::dquat rotation(r[3], r[0], r[1], r[2]);  // glm: w first
+    const double length = glm::length(rotation);
+    if (!(length > 1e-12)) fail(where + ", rotation", "has no direction (all zero)");
+    out = glm::mat4_cast(rotation / length);
+  }
+  for (int c = 0; c < 3 && !node.scale.empty(); ++c) out[c] *= node.scale[c];
+  for (int c = 0; c < 3 && !node.translation.empty(); ++c) out[3][c] = node.translation[c];
+  return out;
+}
+
+std::vector<std::size_t> root_nodes(const Gltf& gltf) {
+  const tinygltf::Model& model = gltf.model;
+  if (!model.scenes.empty()) {
+    const auto& nodes = model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))].nodes;
+    return {nodes.begin(), nodes.end()};
+  }
+  std::vector<std::uint8_t> is_child(model.nodes.size(), 0);
+  for (const tinygltf::Node& node : model.nodes) {
+    for (int child : node.children) is_child[child] = 1;
+  }
+  std::vector<std::size_t> roots;
+  for (std::size_t i = 0; i < is_child.size(); ++i) {
+    if (!is_child[i]) roots.push_back(i);
+  }
+  return roots;
+}
+
+bool is_finite(const glm::dmat4& m) {
+  for (int i = 0; i < 16; ++i) {
+    if (!std::isfinite(static_cast<float>(m[i / 4][i % 4]))) return false;
+  }
+  return true;
+}
+
+/// A direction of the node in the world, or zero where the transform leaves none.
+glm::dvec3 world_direction(const glm::dmat4& world, const glm::dvec3& local) {
+  const glm::dvec3 direction = glm::dmat3(world) * local;
+  const double length = glm::length(direction);
+  return length > 1e-30 ? direction / length : glm::dvec3(0);
+}
+
+/// The node's name, else the light's or camera's own.
+std::string name_of(const tinygltf::Node& node, const std::string& own) {
+  return node.name.empty() ? own : node.name;
+}
+
+}  // namespace
+
+std::vector<PlacedNode> place_nodes(const Gltf& gltf) {
+  std::vector<PlacedNode> out;
+  std::vector<std::uint8_t> seen(gltf.model.nodes.size(), 0);
+  std::vector<PlacedNode> open;  // a stack of nodes with their parents' transforms: any depth
+  const auto roots = root_nodes(gltf);
+  for (auto it = roots.rbegin(); it != roots.rend(); ++it) open.push_back({*it, glm::dmat4(1)});
+  while (!open.empty()) {
+    PlacedNode placed = open.back();
+    open.pop_back();
+    const std::string where = gltf.file + ": " + place(gltf.json, "nodes", placed.node);
+    if (seen[placed.node]++) fail(where, "is in the scene twice");
+    const tinygltf::Node& node = gltf.model.nodes[placed.node];
+    placed.world_from_local = placed.world_from_local * local_transform(node, where);
+    if (!is_finite(placed.world_from_local)) fail(where, "its place in the world is not finite");
+    out.push_back(placed);
+    for (auto it = node.children.rbegin(); it != node.children.rend(); ++it) {
+      open.push_back({static_cast<std::size_t>(*it), placed.world_from_local});
+    }
+  }
+  return out;
+}
+
+bool is_degenerate(const glm::dmat4& transform) {
+  const glm::dmat3 linear(transform);
+  const double longest = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+  // Relative to the scale, and far enough from zero for the float arithmetic of whoever draws it.
+  return !(longest > 1e-12) || !(std::abs(glm::determinant(linear)) > 1e-12 * longest * longest * longest);
+}
+
+void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings) {
+  const tinygltf::Node& node = gltf.model.nodes[placed.node];
+  const auto extension = node.extensions.find("KHR_lights_punctual");
+  if (extension == node.extensions.end() || !extension->second.Has("light")) return;
+  const tinygltf::Light& in =
+      gltf.model.lights[static_cast<std::size_t>(extension->second.Get("light").GetNumberAsInt())];
+  const std::string here = place(gltf.json, "nodes", placed.node);
+  Light out;
+  out.name = name_of(node, in.name);
+  out.intensity = static_cast<float>(in.intensity);
+  for (int c = 0; c < 3 && !in.color.empty(); ++c) out.color[c] = static_cast<float>(in.color[c]);
+  if (out.intensity == 0 || std::max({out.color.r, out.color.g, out.color.b}) == 0) {
+    warnings.add(gltf.file, here, "a light without intensity or colour is skipped");
+    return;
+  }
+  if (in.type == "spot") out.type = LightType::spot;
+  if (in.type == "directional") out.type = LightType::directional;
+  out.direction_ws = glm::vec3(world_direction(placed.world_from_local, {0, 0, -1}));
+  if (out.direction_ws == glm::vec3(0)) {
+    if (out.type != LightType::point) {
+      warnings.add(gltf.file, here, "a light whose node has zero scale has no direction and is skipped");
+      return;
+    }
+    out.direction_ws = {0, 0, -1};
+  }
+  if (out.type != LightType::directional) {
+    out.position_ws = glm::vec3(placed.world_from_local[3]);
+    if (in.range > 0) out.range_m = static_cast<float>(in.range);
+  }
+  out.inner_cone_rad = static_cast<float>(in.spot.innerConeAngle);
+  out.outer_cone_rad = static_cast<float>(in.spot.outerConeAngle);
+  scene.lights.push_back(std::move(out));
+}
+
+void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings) {
+  const tinygltf::Node& node = gltf.model.nodes[placed.node];
+  if (node.camera < 0) return;
+  const tinygltf::Camera& in = gltf.model.cameras[static_cast<std::size_t>(node.camera)];
+  const std::string here = place(gltf.json, "nodes", placed.node);
+  if (in.type != "perspective") {
+    warnings.add(gltf.file, here, "an orthographic camera is skipped");
+    return;
+  }
+  const glm::dvec3 forward = world_direction(placed.world_from_local, {0, 0, -1});
+  const glm::dvec3 up = world_direction(placed.world_from_local, {0, 1, 0});
+  const glm::dvec3 across = up - forward * glm::dot(up, forward);
+  if (forward == glm::dvec3(0) || !(glm::length(across) > 1e-9)) {
+    warnings.add(gltf.file, here, "a camera whose node has zero scale is skipped");
+    return;
+  }
+  Camera out;
+  out.name = name_of(node, in.name);
+  out.position_ws = glm::vec3(placed.world_from_local[3]);
+  out.forward_ws = glm::vec3(forward);
+  out.up_ws = glm::vec3(glm::normalize(across));
+  out.yfov_rad = static_cast<float>(in.perspective.yfov);
+  out.aspect = static_cast<float>(in.perspective.aspectRatio);
+  out.znear_m = static_cast<float>(in.perspective.znear);
+  scene.cameras.push_back(std::move(out));
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The node tree: where meshes, lights and cameras stand in the world.
+#pragma once
+
+#include "../scene.h"
+#include "gltf.h"
+
+namespace chandelier::baker {
+
+struct PlacedNode {
+  std::size_t node;
+  glm::dmat4 world_from_local;
+};
+
+/// The nodes of the default scene (of the first where none is named; all roots where there are no scenes), parents
+/// first. Throws Error.
+std::vector<PlacedNode> place_nodes(const Gltf& gltf);
+
+/// Appends the node's light or camera to the scene, where it has one. Throws Error.
+void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);
+void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);
+
+/// Whether the transform squashes space flat: normals and winding then have no meaning.
+bool is_degenerate(const glm::dmat4& transform);
+
+}  // namespace chandelier::baker

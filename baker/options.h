@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line of chandelier-bake.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "bake/bake.h"
+
+namespace chandelier::baker {
+
+struct Options {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  BakeSettings bake;
+  bool quiet = false;
+};
+
+/// Returns nothing and sets `exit_code` where there is nothing to bake: --help (0) or a usage error (2).
+std::optional<Options> parse_options(int argc, char** argv, int& exit_code);
+
+}  // namespace chandelier::baker
