@@ -88,7 +88,7 @@ std::string fault(const Camera& camera) {
 template <typename Record>
 std::string first_fault(const char* section, std::span<const Record> records) {
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (std::string line = fault(records[i]); !line.empty()) return section + ("[" + text(i) + "]") + line;
+    if (std::string line = fault(records[i]); !line.empty()) return std::string(section) + "[" + text(i) + "]" + line;
   }
   return {};
 }
