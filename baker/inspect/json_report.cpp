@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// chandelier-inspect's report for machines.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "summary.h"
+
+namespace chandelier::inspect {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const glm::vec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+Json to_json(const Spread& s) {
+  return {{"min", s.min}, {"mean", s.mean}, {"max", s.max}};
+}
+
+std::string name(const pack::File& file, const pack::StringRef& ref) {
+  return std::string(file.text(ref));
+}
+
+Json sections(const pack::View& view) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
+    const pack::SectionInfo& info = pack::section_infos[i];
+    const std::size_t bytes = pack::section_bytes(view, i).size();
+    list.push_back({{"kind", static_cast<std::uint32_t>(info.kind)},
+                    {"name", info.name},
+                    {"count", bytes / info.stride_bytes},
+                    {"stride_bytes", info.stride_bytes},
+                    {"size_bytes", bytes}});
+  }
+  return list;
+}
+
+Json materials(const pack::File& file) {
+  Json list = Json::array();
+  for (const pack::Material& material : file.view().materials) {
+    list.push_back({{"name", name(file, material.name)},
+                    {"alpha_mode", name_of(material.alpha_mode)},
+                    {"double_sided", material.double_sided == 1}});
+  }
+  return list;
+}
+
+Json images(const pack::File& file) {
+  Json list = Json::array();
+  for (const pack::Image& image : file.view().images) {
+    list.push_back({{"name", name(file, image.name)},
+                    {"width", image.width},
+                    {"height", image.height},
+                    {"level_count", image.level_count},
+                    {"format", name_of(image.format)},
+                    {"size_bytes", image.size_bytes}});
+  }
+  return list;
+}
+
+Json lights(const pack::File& file) {
+  Json list = Json::array();
+  for (const pack::Light& light : file.view().lights) {
+    list.push_back({{"name", name(file, light.name)},
+                    {"type", name_of(light.type)},
+                    {"position_ws", to_json(light.position_ws)},
+                    {"direction_ws", to_json(light.direction_ws)},
+                    {"color", to_json(light.color)},
+                    {"intensity", light.intensity},
+                    {"range_m", light.range_m},
+                    {"range_source", name_of(light.range_source)},
+                    {"inner_cone_cos", light.inner_cone_cos},
+                    {"outer_cone_cos", light.outer_cone_cos}});
+  }
+  return list;
+}
+
+Json cameras(const pack::File& file) {
+  Json list = Json::array();
+  for (const pack::Camera& camera : file.view().cameras) {
+    list.push_back({{"name", name(file, camera.name)},
+                    {"position_ws", to_json(camera.position_ws)},
+                    {"forward_ws", to_json(camera.forward_ws)},
+                    {"up_ws", to_json(camera.up_ws)},
+                    {"yfov_rad", camera.yfov_rad},
+                    {"aspect", camera.aspect},
+                    {"znear_m", camera.znear_m}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string json_report(const std::string& path, const pack::File& file) {
+  const Summary summary = summarize(file);
+  const pack::View& view = file.view();
+  const Json report = {{"file", path},
+                       {"size_bytes", file.size_bytes()},
+                       {"version", pack::schema_version},
+                       {"schema_hash", fmt::format("{:016x}", pack::schema_hash)},
+                       {"sources", summary.sources},
+                       {"bounds_min_ws", to_json(view.bake_info->bounds_min_ws)},
+                       {"bounds_max_ws", to_json(view.bake_info->bounds_max_ws)},
+                       {"range_threshold_lx", view.bake_info->range_threshold_lx},
+                       {"sections", sections(view)},
+                       {"triangles", {{"stored", summary.stored_triangles}, {"drawn", summary.drawn_triangles}}},
+                       {"batches",
+                        {{"count", view.batches.size()},
+                         {"drawn", view.batch_instances.size()},
+                         {"triangles", to_json(summary.batch_triangles)}}},
+                       {"instances", view.instances.size()},
+                       {"materials", materials(file)},
+                       {"images", images(file)},
+                       {"lights", lights(file)},
+                       {"cameras", cameras(file)}};
+  // Strings are as the input had them; what is not UTF-8 becomes the replacement character.
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace chandelier::inspect

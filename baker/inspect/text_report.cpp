@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// chandelier-inspect's report for people.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "summary.h"
+
+namespace chandelier::inspect {
+namespace {
+
+using Out = std::back_insert_iterator<std::string>;
+
+/// Names come from files that anybody may have written: keeps control characters off the terminal.
+std::string printable(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const unsigned char byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      fmt::format_to(std::back_inserter(out), "\\x{:02x}", byte);
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string size_text(std::uint64_t bytes) {
+  if (bytes < 1024) return fmt::format("{} bytes", bytes);
+  static constexpr const char* units[] = {"KiB", "MiB", "GiB", "TiB"};
+  double value = static_cast<double>(bytes) / 1024;
+  std::size_t unit = 0;
+  for (; value >= 1024 && unit < 3; ++unit) value /= 1024;
+  return fmt::format("{:.1f} {}", value, units[unit]);
+}
+
+std::string vector_text(const glm::vec3& v) {
+  return fmt::format("{:.3g}, {:.3g}, {:.3g}", v.x, v.y, v.z);
+}
+
+void put_sections(Out out, const pack::View& view) {
+  fmt::format_to(out, "\n{:<18}{:>12}{:>8}{:>16}\n", "section", "count", "stride", "bytes");
+  for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
+    const pack::SectionInfo& info = pack::section_infos[i];
+    const std::size_t bytes = pack::section_bytes(view, i).size();
+    fmt::format_to(out, "{:<18}{:>12}{:>8}{:>16}\n", info.name, bytes / info.stride_bytes, info.stride_bytes, bytes);
+  }
+}
+
+void put_geometry(Out out, const pack::View& view, const Summary& summary) {
+  const Spread& size = summary.batch_triangles;
+  fmt::format_to(out, "\ntriangles  {} stored, {} drawn by {} instances\n", summary.stored_triangles,
+                 summary.drawn_triangles, view.instances.size());
+  fmt::format_to(out, "batches    {} of {:.0f} to {:.0f} triangles, {:.1f} in the mean; {} drawn\n",
+                 view.batches.size(), size.min, size.max, size.mean, view.batch_instances.size());
+  fmt::format_to(out, "materials  {}, {} with an alpha mask, {} double-sided\n", view.materials.size(),
+                 summary.masked_materials, summary.double_sided_materials);
+}
+
+void put_images(Out out, const pack::File& file) {
+  const pack::View& view = file.view();
+  fmt::format_to(out, "images     {}, {}\n", view.images.size(), size_text(view.image_data.size()));
+  for (const pack::Image& image : view.images) {
+    fmt::format_to(out, "  {:>5} x {:<5} {:>2} levels  {:<11}  {:>10}  {}\n", image.width, image.height,
+                   image.level_count, name_of(image.format), size_text(image.size_bytes),
+                   printable(file.text(image.name)));
+  }
+}
+
+void put_light_table(Out out, const pack::File& file) {
+  fmt::format_to(out, "  {:<12}{:<30}{:>12}    {:<20}{}\n", "type", "position, m", "intensity", "range", "name");
+  for (const pack::Light& light : file.view().lights) {
+    const bool directional = light.type == pack::LightType::directional;
+    const std::string place = directional ? "to " + vector_text(light.direction_ws) : vector_text(light.position_ws);
+    const std::string range = light.range_source == pack::RangeSource::unbounded
+                                  ? "no end"
+                                  : fmt::format("{:.4g} m {}", light.range_m, name_of(light.range_source));
+    fmt::format_to(out, "  {:<12}{:<30}{:>9.4g} {}    {:<20}{}\n", name_of(light.type), place, light.intensity,
+                   directional ? "lx" : "cd", range, printable(file.text(light.name)));
+  }
+}
+
+void put_lights(Out out, const pack::File& file, const Summary& summary, bool all_lights) {
+  fmt::format_to(out, "lights     {}: {} point, {} spot, {} directional\n", file.view().lights.size(),
+                 summary.lights_of_type[0], summary.lights_of_type[1], summary.lights_of_type[2]);
+  if (summary.lights_of_type[0] + summary.lights_of_type[1] > 0) {
+    fmt::format_to(out, "  range      {:.4g} to {:.4g} m; {} authored, {} derived at {:.3g} lx\n", summary.range_m.min,
+                   summary.range_m.max, summary.lights_of_source[0], summary.lights_of_source[1],
+                   file.view().bake_info->range_threshold_lx);
+    fmt::format_to(out, "  intensity  {:.4g} to {:.4g} cd\n", summary.intensity_cd.min, summary.intensity_cd.max);
+  }
+  if (all_lights && !file.view().lights.empty()) put_light_table(out, file);
+}
+
+void put_cameras(Out out, const pack::File& file) {
+  fmt::format_to(out, "cameras    {}\n", file.view().cameras.size());
+  for (const pack::Camera& camera : file.view().cameras) {
+    fmt::format_to(out, "  {}  at {} towards {}, {:.1f} degrees high\n", printable(file.text(camera.name)),
+                   vector_text(camera.position_ws), vector_text(camera.forward_ws),
+                   camera.yfov_rad * 180.0 / std::acos(-1.0));
+  }
+}
+
+}  // namespace
+
+std::string text_report(const std::string& path, const pack::File& file, bool all_lights) {
+  const Summary summary = summarize(file);
+  const pack::BakeInfo& info = *file.view().bake_info;
+  std::string text;
+  const Out out = std::back_inserter(text);
+  fmt::format_to(out, "{}: {}, version {}\n", printable(path), size_text(file.size_bytes()), pack::schema_version);
+  for (const std::string& source : summary.sources) fmt::format_to(out, "  from {}\n", printable(source));
+  fmt::format_to(out, "  bounds ({}) to ({}) m\n", vector_text(info.bounds_min_ws), vector_text(info.bounds_max_ws));
+  put_sections(out, file.view());
+  put_geometry(out, file.view(), summary);
+  put_images(out, file);
+  put_lights(out, file, summary, all_lights);
+  put_cameras(out, file);
+  return text;
+}
+
+}  // namespace chandelier::inspect
