@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// A damaged file is refused with one line, whatever the damage.
+#define XXH_INLINE_ALL
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "pack_sample.h"
+
+namespace chandelier::pack::test {
+namespace {
+
+/// A pack on disk whose bytes can be changed in place.
+struct Target {
+  Folder folder;
+  std::filesystem::path path = folder / "a.pack";
+  std::vector<char> bytes;
+  int descriptor = -1;
+
+  Target() {
+    write(path, sample());
+    bytes = read_file(path);
+    descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  }
+  ~Target() { ::close(descriptor); }
+  void put(std::size_t at, char value) const { ASSERT_EQ(pwrite(descriptor, &value, 1, static_cast<off_t>(at)), 1); }
+};
+
+TEST(PackDamage, EveryTruncationIsRefused) {
+  const Target target;
+  for (std::size_t size = target.bytes.size(); size-- > 0;) {
+    ASSERT_EQ(ftruncate(target.descriptor, static_cast<off_t>(size)), 0);
+    ASSERT_NE(open_error(target.path), "") << size << " bytes";
+  }
+}
+
+TEST(PackDamage, BytesAtTheEndAreRefused) {
+  const Target target;
+  target.put(target.bytes.size(), 0);
+  EXPECT_NE(open_error(target.path).find("header.file_bytes"), std::string::npos);
+}
+
+// Header, table, sections and the zeros between: every byte of the file is one that something checks.
+TEST(PackDamage, EveryBitCounts) {
+  const Target target;
+  for (std::size_t at = 0; at < target.bytes.size(); ++at) {
+    for (int bit = 0; bit < 8; ++bit) {
+      target.put(at, static_cast<char>(target.bytes[at] ^ (1 << bit)));
+      ASSERT_NE(open_error(target.path), "") << "byte " << at << " bit " << bit;
+    }
+    target.put(at, target.bytes[at]);
+  }
+  EXPECT_EQ(open_error(target.path), "");
+}
+
+TEST(PackDamage, EveryByteOfHeaderAndTableCounts) {
+  const Target target;
+  const std::size_t end = sizeof(FileHeader) + section_infos.size() * sizeof(SectionEntry);
+  for (std::size_t at = 0; at < end; ++at) {
+    for (int change = 1; change < 256; change += 7) {
+      target.put(at, static_cast<char>(target.bytes[at] + change));
+      ASSERT_NE(open_error(target.path), "") << "byte " << at << " plus " << change;
+    }
+    target.put(at, target.bytes[at]);
+  }
+}
+
+/// Makes checksums right where the table's entries lie within the file, as a hostile writer would.
+void reseal(std::vector<char>& bytes) {
+  FileHeader header;
+  std::memcpy(&header, bytes.data(), sizeof(header));
+  if (header.section_count > section_infos.size()) return;
+  char* table = bytes.data() + sizeof(header);
+  for (std::uint32_t i = 0; i < header.section_count; ++i) {
+    SectionEntry entry;
+    std::memcpy(&entry, table + i * sizeof(entry), sizeof(entry));
+    if (entry.offset_bytes > bytes.size() || entry.size_bytes > bytes.size() - entry.offset_bytes) continue;
+    entry.checksum = XXH3_64bits(bytes.data() + entry.offset_bytes, entry.size_bytes);
+    std::memcpy(table + i * sizeof(entry), &entry, sizeof(entry));
+  }
+  header.table_checksum = XXH3_64bits(table, header.section_count * sizeof(SectionEntry));
+  std::memcpy(bytes.data(), &header, sizeof(header));
+}
+
+/// Follows every reference of an opened pack, as a renderer would. A sanitizer sees it if one leads astray.
+double follow(const File& file) {
+  const View& view = file.view();
+  double sum = 0;
+  for (const BatchInstance& draw : view.batch_instances) {
+    const Batch& batch = view.batches[draw.batch];
+    sum += view.instances[draw.instance].world_from_local[0].x;
+    for (std::uint32_t i = 0; i < batch.index_count; ++i) {
+      const std::uint32_t vertex = view.indices[batch.first_index + i].vertex;
+      sum += view.positions[vertex].position_ls.x + view.vertex_attributes[vertex].uv0.x;
+    }
+    const Material& material = view.materials[batch.material];
+    if (material.normal_texture != none) {
+      const Image& image = view.images[view.textures[material.normal_texture].image];
+      for (std::uint64_t i = 0; i < image.size_bytes; ++i)
+        sum += static_cast<double>(view.image_data[image.first_byte + i]);
+    }
+    for (const char c : file.text(material.name)) sum += c;
+  }
+  for (const Light& light : view.lights) sum += light.intensity + static_cast<double>(file.text(light.name).size());
+  return sum;
+}
+
+// With right checksums a change may leave a valid pack. It must then be one that can be used; else it must be refused.
+TEST(PackDamage, ChangesWithRightChecksumsAreRefusedOrHarmless) {
+  const Target target;
+  std::mt19937 random(1);
+  int refused = 0, harmless = 0;
+  for (int round = 0; round < 20000; ++round) {
+    std::vector<char> bytes = target.bytes;
+    const int changes = 1 + round % 3;
+    for (int i = 0; i < changes; ++i) bytes[random() % bytes.size()] = static_cast<char>(random());
+    reseal(bytes);
+    ASSERT_EQ(pwrite(target.descriptor, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+    try {
+      const File file(target.path);
+      ASSERT_TRUE(std::isfinite(follow(file)));
+      ++harmless;
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 1000);
+  EXPECT_GT(harmless, 1000);
+}
+
+TEST(PackDamage, WhatIsNoPack) {
+  const Folder folder;
+  EXPECT_EQ(open_error(folder / "none"), "cannot open (No such file or directory)");
+  std::filesystem::create_directory(folder / "folder");
+  EXPECT_EQ(open_error(folder / "folder"), "not a file (a folder)");
+  write_file(folder / "empty", {});
+  EXPECT_EQ(open_error(folder / "empty"), "too short for a pack (0 bytes)");
+  write_file(folder / "text", std::vector<char>(1000, 'x'));
+  EXPECT_EQ(open_error(folder / "text"), "not a Chandelier pack (wrong magic)");
+  ASSERT_EQ(mkfifo((folder / "fifo").c_str(), 0600), 0);
+  EXPECT_EQ(open_error(folder / "fifo"), "not a regular file");
+}
+
+}  // namespace
+}  // namespace chandelier::pack::test

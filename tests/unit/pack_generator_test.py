@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+# generate.py refuses pages that would not give one layout everywhere, and its hash follows the layout only.
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SCHEMAS = Path(os.environ["CHANDELIER_SCHEMAS"])
+sys.path.insert(0, str(SCHEMAS))
+import generate  # noqa: E402
+
+
+def page(body):
+    return f'<schema name="pack" namespace="n" version="1"><constant name="none" type="u32" value="1"/>{body}</schema>'
+
+
+def record(fields, extra=""):
+    return page(f'<record name="R" {extra}>{fields}</record>')
+
+
+# (what is wrong, page, part of the message)
+REFUSED = [
+    ("hole", record('<field name="a" type="u32"/><field name="b" type="u64"/>'), "R.b: 4 bytes of padding before it"),
+    ("hole at the end", record('<field name="a" type="u64"/><field name="b" type="u32"/>'),
+     "R: 4 bytes of padding at the end"),
+    ("hole after bytes", record('<field name="a" type="u8" count="3"/><field name="b" type="f32"/>'),
+     "R.b: 1 bytes of padding before it"),
+    ("u64 on the GPU", record('<field name="a" type="u64"/>', 'gpu="yes"'), "R.a: a GPU record cannot hold it (u64)"),
+    ("unknown type", record('<field name="a" type="f64"/>'), "R.a: unknown type (f64)"),
+    ("unknown attribute", record('<field name="a" type="u32" maximum="2"/>'), "R.a: unknown attribute (maximum)"),
+    ("twice", record('<field name="a" type="u32"/><field name="a" type="u32"/>'), "R.a: declared twice"),
+    ("a word of GLSL", record('<field name="filter" type="u32"/>'), "the name is a reserved word (filter)"),
+    ("a method of GLSL", record('<field name="length" type="u32"/>'), "the name is a reserved word (length)"),
+    ("bad name", record('<field name="aB" type="u32"/>'), "the name does not match"),
+    ("unknown enum", record('<field name="a" type="u32" enum="E"/>'), "R.a: no such enum (E)"),
+    ("unknown section", record('<field name="a" type="u32" index="s"/>'), "R.a: no such section (s)"),
+    ("early string", record('<field name="a" type="string"/>'), "R.a: StringRef is not declared before it"),
+    ("enum with a gap", page('<enum name="E"><value name="a" value="0"/><value name="b" value="2"/></enum>'),
+     "E.b: values must count up from 0 (2)"),
+    ("kinds descend", page('<record name="R"><field name="a" type="u32"/></record>'
+                           '<section kind="2" name="a" record="R"/><section kind="1" name="b" record="R"/>'),
+     "kinds must ascend"),
+    ("not XML", "<schema", "error: "),
+]
+
+
+class PackGenerator(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = Path(self.folder.name) / "page.xml"
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def schema_of(self, text):
+        self.path.write_text(text, encoding="utf-8")
+        return generate.Schema(self.path)
+
+    def test_bad_pages_are_refused_in_one_line(self):
+        for what, text, message in REFUSED:
+            with self.subTest(what):
+                self.path.write_text(text, encoding="utf-8")
+                out = Path(self.folder.name) / "out"
+                run = subprocess.run([sys.executable, SCHEMAS / "generate.py", "--schema", self.path, "--out", out],
+                                     capture_output=True, text=True)
+                self.assertEqual((run.returncode, run.stderr.count("\n")), (1, 1), run.stderr)
+                self.assertIn(message, run.stderr)
+                self.assertFalse(out.exists())
+
+    def test_the_hash_follows_the_layout_only(self):
+        text = (SCHEMAS / "pack.xml").read_text(encoding="utf-8")
+        before = self.schema_of(text).hash
+        for old, new in (("Which texels.", ""), ("Linear RGBA.", "Linear."), ('max="31"', 'max="30"')):
+            self.assertEqual(self.schema_of(text.replace(old, new)).hash, before)
+        for old, new in (('name="uv1_mask"', 'name="uv_mask"'), ('name="nearest" value="0"', 'name="near" value="0"'),
+                         ('<field name="yfov_rad" type="f32"', '<field name="yfov_rad" type="u32"'),
+                         ('kind="14"', 'kind="15"')):
+            self.assertIn(old, text)
+            self.assertNotEqual(self.schema_of(text.replace(old, new)).hash, before, old)
+
+    def test_a_stale_format_page_is_refused(self):
+        stale = Path(self.folder.name) / "FORMAT.md"
+        stale.write_text((SCHEMAS / "FORMAT.md").read_text(encoding="utf-8") + "x", encoding="utf-8")
+        run = subprocess.run([sys.executable, SCHEMAS / "generate.py", "--schema", SCHEMAS / "pack.xml", "--check-format",
+                              stale], capture_output=True, text=True)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("run generate.py", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+# chandelier-inspect on the sample pack: what it says and how it exits.
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+
+def inspect(*arguments, **more):
+    return subprocess.run([os.environ["CHANDELIER_INSPECT"], *arguments], capture_output=True, text=True, **more)
+
+
+class PackInspect(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = Path(self.folder.name) / "a.pack"
+        subprocess.run([os.environ["CHANDELIER_WRITE_SAMPLE"], self.path], check=True)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_json(self):
+        run = inspect(self.path, "--json")
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        report = json.loads(run.stdout)
+        self.assertEqual(report["size_bytes"], self.path.stat().st_size)
+        self.assertEqual(report["sources"], ["hall.glb", "lamps.gltf"])
+        self.assertEqual(report["bounds_min_ws"], [-2, 0, -0.5])
+        self.assertEqual(report["sections"][2], {"kind": 3, "name": "positions", "count": 4, "stride_bytes": 12,
+                                                 "size_bytes": 48})
+        self.assertEqual(report["triangles"], {"stored": 2, "drawn": 3})
+        self.assertEqual(report["batches"], {"count": 2, "drawn": 3, "triangles": {"min": 1, "mean": 1, "max": 1}})
+        self.assertEqual([m["name"] for m in report["materials"]], ["stone", "Blätter"])
+        self.assertEqual(report["images"][0], {"name": "bricks.png", "width": 4, "height": 2, "level_count": 3,
+                                               "format": "rgba8_srgb", "size_bytes": 44})
+        self.assertEqual([(light["name"], light["type"], light["range_source"]) for light in report["lights"]],
+                         [("bulb", "point", "authored"), ("torch", "spot", "derived"),
+                          ("sun", "directional", "unbounded")])
+        self.assertEqual(report["lights"][0]["position_ws"], [1, 2, 3])
+        self.assertEqual(report["cameras"][0]["name"], "eye")
+
+    def test_text(self):
+        run = inspect(self.path)
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        for part in ("positions                    4      12              48", "2 stored, 3 drawn by 2 instances",
+                     "3: 1 point, 1 spot, 1 directional", "1 authored, 1 derived at 0.05 lx", "bricks.png", "eye"):
+            self.assertIn(part, run.stdout)
+        self.assertNotIn("torch", run.stdout)
+
+    def test_light_table(self):
+        lines = inspect(self.path, "--lights").stdout.splitlines()
+        torch = next(line for line in lines if "torch" in line)
+        self.assertEqual(torch.split(), ["spot", "1,", "2,", "3", "12.5", "cd", "15.8", "m", "derived", "torch"])
+        sun = next(line for line in lines if "sun" in line)
+        self.assertEqual(sun.split(), ["directional", "to", "0,", "0,", "-1", "1000", "lx", "no", "end", "sun"])
+
+    def assert_error(self, run, path, what):
+        self.assertEqual((run.returncode, run.stdout), (1, ""))
+        self.assertEqual(run.stderr, f"chandelier-inspect: error: {path}: {what}\n")
+
+    def test_errors(self):
+        self.assert_error(inspect("none.pack", cwd=self.folder.name), "none.pack",
+                          "cannot open (No such file or directory)")
+        self.assert_error(inspect(self.folder.name), self.folder.name, "not a file (a folder)")
+        data = bytearray(self.path.read_bytes())
+        self.path.write_bytes(data[:-1])
+        self.assert_error(inspect(self.path, "--json"), self.path,
+                          f"header.file_bytes: {len(data)} where the file has {len(data) - 1}")
+
+    def test_usage(self):
+        for arguments in ([], ["a", "b"], [str(self.path), "--no-such-option"]):
+            run = inspect(*arguments)
+            self.assertEqual((run.returncode, run.stdout), (2, ""), arguments)
+            self.assertNotEqual(run.stderr, "")
+        run = inspect("--help")
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        self.assertIn("Examples:", run.stdout)
+
+    def test_full_disk(self):
+        with open("/dev/full", "w") as full:
+            run = subprocess.run([os.environ["CHANDELIER_INSPECT"], self.path], stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual((run.returncode, run.stderr), (1, b"chandelier-inspect: error: cannot write to standard output\n"))
+
+
+if __name__ == "__main__":
+    unittest.main()

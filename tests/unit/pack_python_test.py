@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+# Python's generated module reads what C++ wrote: the values of pack_sample.cpp.
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import pack_schema
+
+
+class PackPython(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = Path(self.folder.name) / "a.pack"
+        subprocess.run([os.environ["CHANDELIER_WRITE_SAMPLE"], self.path], check=True)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_values(self):
+        pack = pack_schema.read_pack(self.path)
+        self.assertEqual({name: len(getattr(pack, name)) for name, _ in pack_schema.SECTIONS.values()}, {
+            "bake_info": 1, "strings": 70, "positions": 4, "vertex_attributes": 4, "indices": 6, "batches": 2,
+            "instances": 2, "batch_instances": 3, "materials": 2, "textures": 2, "images": 2, "image_data": 52,
+            "lights": 3, "cameras": 1})
+        info = pack.bake_info[0]
+        self.assertEqual(pack.text(info["source"]), "hall.glb\nlamps.gltf")
+        self.assertEqual((info["unique_triangles"], info["instanced_triangles"], info["batch_triangles"]), (2, 3, 100))
+        self.assertEqual(pack.positions["position_ls"].tolist(), [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, -0.5]])
+        self.assertEqual(pack.vertex_attributes["tangent_ls"][2].tolist(), [1, 0, 0, -1])
+        self.assertEqual(pack.vertex_attributes["uv1"][3].tolist(), [6, -1])
+        self.assertEqual(pack.vertex_attributes["color"][1], 0xFF804021)
+        self.assertEqual(pack.indices["vertex"].tolist(), [0, 1, 2, 0, 2, 3])
+        self.assertEqual(pack.batches["first_index"].tolist(), [0, 3])
+        self.assertEqual(pack.instances["world_from_local"][1].tolist(), [[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0]])
+        self.assertEqual(pack.image_data.tolist(), [i * 5 % 256 for i in range(52)])
+
+    def test_names_and_enums(self):
+        pack = pack_schema.read_pack(self.path)
+        self.assertEqual([pack.text(m["name"]) for m in pack.materials], ["stone", "Blätter"])
+        self.assertEqual(pack.materials["base_color_texture"].tolist(), [0, 0])
+        self.assertEqual(pack.materials["emissive_texture"].tolist(), [pack_schema.NONE] * 2)
+        self.assertEqual(pack.materials["alpha_mode"].tolist(),
+                         [pack_schema.ALPHA_MODE_OPAQUE, pack_schema.ALPHA_MODE_MASK])
+        self.assertEqual([pack_schema.LIGHT_TYPE[t] for t in pack.lights["type"]], ["point", "spot", "directional"])
+        self.assertEqual([pack_schema.RANGE_SOURCE[t] for t in pack.lights["range_source"]],
+                         ["authored", "derived", "unbounded"])
+        self.assertEqual(pack.lights["intensity"].tolist(), [12.5, 12.5, 1000])
+        self.assertEqual(pack.textures["wrap_v"].tolist(), [pack_schema.WRAP_MIRRORED_REPEAT, pack_schema.WRAP_REPEAT])
+        self.assertEqual(pack.text(pack.cameras[0]["name"]), "eye")
+
+    def test_damage_is_refused(self):
+        good = self.path.read_bytes()
+        for at in range(len(good)):
+            bad = bytearray(good)
+            bad[at] ^= 0x10
+            self.path.write_bytes(bad)
+            # The zeros between sections carry nothing that this reader hands out.
+            if at < pack_schema.FileHeader.itemsize or good[at] != 0:
+                with self.assertRaises(pack_schema.PackError, msg=f"byte {at}"):
+                    pack_schema.read_pack(self.path)
+        for size in (0, 1, 39, 40, 700, len(good) - 1):
+            self.path.write_bytes(good[:size])
+            with self.assertRaises(pack_schema.PackError, msg=f"{size} bytes"):
+                pack_schema.read_pack(self.path)
+
+
+if __name__ == "__main__":
+    unittest.main()
