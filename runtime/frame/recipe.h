@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recipe: one answer for each stage of a frame, and its settings. A preset is a recipe with a name.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace chandelier {
+
+enum class GBuffer : uint32_t { depth_normal_material };
+enum class Select : uint32_t { per_light, light_clusters };
+enum class Lookup : uint32_t { all };
+enum class Store : uint32_t { cube_array };
+enum class Project : uint32_t { cube };
+enum class Cull : uint32_t { none, light_frustum };
+enum class Rasterize : uint32_t { multi_draw };
+enum class Filter : uint32_t { hard, pcf };
+enum class Deliver : uint32_t { inlined };
+enum class Shade : uint32_t { ggx, lambert };
+
+/// How a light cluster's d_min follows its distance from the camera (README of runtime/lights).
+enum class DistanceScaling : uint32_t { grow, paper_formula, none };
+
+struct Recipe {
+  GBuffer g_buffer = GBuffer::depth_normal_material;
+  Select select = Select::per_light;
+  Lookup lookup = Lookup::all;
+  Store store = Store::cube_array;
+  Project project = Project::cube;
+  Cull cull = Cull::light_frustum;
+  Rasterize rasterize = Rasterize::multi_draw;
+  Filter filter = Filter::hard;
+  Deliver deliver = Deliver::inlined;
+  Shade shade = Shade::ggx;
+
+  float d_init_m = 0.5f;  // LightCluster §3.1.2, metres
+  float z_far_m = 30.0f;  // LightCluster §5.4, metres
+  DistanceScaling distance_scaling = DistanceScaling::grow;
+  uint32_t face_size_px = 512;                           // width of one face of a cube
+  uint64_t shadow_budget_bytes = uint64_t{1024} << 20;  // depth kept at a time; more maps are drawn in further rounds
+};
+
+/// One stage of a frame and what it may be answered with, for options, help and reports.
+struct StageChoices {
+  std::string_view stage;     // "select"
+  std::string_view question;  // "which lights get a shadow map?"
+  std::span<const std::string_view> answers;
+};
+
+/// Every stage, in the order of the frame.
+std::span<const StageChoices> stage_choices();
+/// The name of this recipe's answer to stage `stage` (an index into stage_choices()).
+std::string_view answer(const Recipe& recipe, std::size_t stage);
+/// Sets it by name; false where the stage has no such answer.
+bool set_answer(Recipe& recipe, std::size_t stage, std::string_view answer);
+
+std::span<const std::string_view> distance_scaling_names();
+
+struct Preset {
+  std::string_view name;         // "lightcluster"
+  std::string_view description;  // one line
+  Recipe recipe;
+};
+std::span<const Preset> presets();
+
+/// Why this recipe cannot be rendered, or nothing where it can.
+std::optional<std::string> refusal(const Recipe& recipe);
+
+}  // namespace chandelier

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws pictures of a pack with a recipe. This is what an embedding program includes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame/camera.h"
+#include "frame/recipe.h"
+#include "gpu/device.h"
+#include "pack_file.h"
+
+namespace chandelier {
+
+struct RenderSettings {
+  Recipe recipe;
+  Camera camera;
+  uint32_t width = 1280;
+  uint32_t height = 720;
+  float ambient = 0.0f;              // radiance from everywhere, for scenes that would be black without
+  std::optional<float> exposure_ev;  // stops; absent: from the picture's mean log luminance
+};
+
+struct StageTime {
+  std::string name;
+  double gpu_ms = 0.0;
+  double cpu_ms = 0.0;
+};
+
+/// What a frame took and did. Counters are exact and repeat from run to run.
+struct FrameStats {
+  double frame_ms = 0.0;  // from the first command recorded to the last one finished
+  std::vector<StageTime> stages;
+  float exposure_ev = 0.0f;  // as used
+  uint64_t lights = 0;
+  uint64_t lights_in_view = 0;
+  uint64_t light_clusters = 0;  // equals lights_in_view where lights are not clustered
+  uint64_t shadow_maps = 0;
+  uint64_t shadow_views = 0;
+  uint64_t shadow_triangles = 0;
+  uint64_t shadow_draws = 0;
+  uint64_t shadow_bytes = 0;      // depth that all shadow maps of the frame need together
+  uint64_t shadow_pool_bytes = 0;  // depth held at a time
+  uint64_t shadow_rounds = 0;      // how often the pool was filled
+  uint64_t visibility_bytes = 0;
+};
+
+/// Rows from the top, four channels.
+struct Picture {
+  uint32_t width = 0;
+  uint32_t height = 0;
+  std::vector<float> radiance;  // linear RGBA, before exposure and tone map
+  std::vector<uint8_t> shown;   // sRGB RGBA, as on a screen
+};
+
+class Renderer {
+ public:
+  /// Uploads the pack, which is not needed afterwards. Throws gpu::Error.
+  Renderer(gpu::Device& device, const pack::File& pack);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// Draws a tiny frame so that no pipeline is compiled while a real one is timed.
+  void warm_up(const RenderSettings& settings);
+  /// Draws one frame and waits for it. Throws gpu::Error, std::invalid_argument where refusal() has a reason.
+  FrameStats draw(const RenderSettings& settings);
+  /// The last frame drawn.
+  Picture read_back();
+  /// The last frame as shown: VK_FORMAT_R8G8B8A8_UNORM holding sRGB values, in TRANSFER_SRC_OPTIMAL.
+  VkImage shown_image() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace chandelier

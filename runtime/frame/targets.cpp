@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame/targets.h"
+
+namespace chandelier {
+
+Targets make_targets(const gpu::Device& device, uint32_t width, uint32_t height) {
+  const auto image = [&](VkFormat format, VkImageUsageFlags usage) {
+    return gpu::make_image(device, {.format = format, .width = width, .height = height, .usage = usage});
+  };
+  constexpr VkImageUsageFlags read_later = VK_IMAGE_USAGE_SAMPLED_BIT;
+  constexpr VkImageUsageFlags copied_later = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  return {image(VK_FORMAT_R32G32B32A32_UINT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | read_later),
+          image(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | read_later),
+          image(VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | copied_later),
+          image(VK_FORMAT_R8G8B8A8_UNORM, copied_later),
+          width,
+          height};
+}
+
+void set_viewport(VkCommandBuffer cmd, uint32_t width, uint32_t height) {
+  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height), 0.0f, 1.0f};
+  const VkRect2D scissor{{0, 0}, {width, height}};
+  vkCmdSetViewport(cmd, 0, 1, &viewport);
+  vkCmdSetScissor(cmd, 0, 1, &scissor);
+}
+
+}  // namespace chandelier

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The screen-sized images of a frame, and how its stages use them.
+#pragma once
+
+#include "gpu/resources.h"
+
+namespace chandelier {
+
+struct Targets {
+  gpu::Image surface;   // shading/surface.glsl
+  gpu::Image depth;     // reversed: 0 is the background
+  gpu::Image radiance;  // linear
+  gpu::Image shown;     // sRGB values
+  uint32_t width = 0;
+  uint32_t height = 0;
+};
+
+Targets make_targets(const gpu::Device& device, uint32_t width, uint32_t height);
+
+/// How images are used in a frame, for barriers.
+namespace use {
+inline constexpr gpu::ImageUse nothing{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE};
+inline constexpr gpu::ImageUse color_attachment{VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                                VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+inline constexpr gpu::ImageUse depth_attachment{
+    VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
+inline constexpr gpu::ImageUse sampled{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+inline constexpr gpu::ImageUse storage{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT};
+inline constexpr gpu::ImageUse copied{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                      VK_ACCESS_2_TRANSFER_READ_BIT};
+}  // namespace use
+
+/// Covers an image `width` by `height` with viewport and scissor.
+void set_viewport(VkCommandBuffer cmd, uint32_t width, uint32_t height);
+
+}  // namespace chandelier

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/pipelines.h"
+
+#include <algorithm>
+
+namespace chandelier::gpu {
+namespace {
+
+Owned<VkShaderModule> make_module(const Device& device, std::span<const uint32_t> spirv) {
+  const VkShaderModuleCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
+  VkShaderModule module = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(device.handle, &info, nullptr, &module), "vkCreateShaderModule");
+  return {device.handle, module, vkDestroyShaderModule};
+}
+
+void make_layout(const Device& device, const LayoutInfo& info, Pipeline& pipeline) {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (VkDescriptorType type : info.bindings)
+    bindings.push_back({.binding = static_cast<uint32_t>(bindings.size()),
+                        .descriptorType = type,
+                        .descriptorCount = 1,
+                        .stageFlags = VK_SHADER_STAGE_ALL});
+  const VkDescriptorSetLayoutCreateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                                 .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
+                                                 .bindingCount = static_cast<uint32_t>(bindings.size()),
+                                                 .pBindings = bindings.data()};
+  VkDescriptorSetLayout set = VK_NULL_HANDLE;
+  check(vkCreateDescriptorSetLayout(device.handle, &set_info, nullptr, &set), "vkCreateDescriptorSetLayout");
+  pipeline.set_layout = {device.handle, set, vkDestroyDescriptorSetLayout};
+
+  std::vector<VkDescriptorSetLayout> sets{set};
+  sets.insert(sets.end(), info.more_sets.begin(), info.more_sets.end());
+  const VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, info.push_bytes};
+  const VkPipelineLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                               .setLayoutCount = static_cast<uint32_t>(sets.size()),
+                                               .pSetLayouts = sets.data(),
+                                               .pushConstantRangeCount = info.push_bytes ? 1u : 0u,
+                                               .pPushConstantRanges = &range};
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  check(vkCreatePipelineLayout(device.handle, &layout_info, nullptr, &layout), "vkCreatePipelineLayout");
+  pipeline.layout = {device.handle, layout, vkDestroyPipelineLayout};
+}
+
+struct Specialization {
+  std::vector<VkSpecializationMapEntry> entries;
+  VkSpecializationInfo info{};
+  explicit Specialization(const Constants& constants) {
+    for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4u, 4});
+    info = {static_cast<uint32_t>(entries.size()), entries.data(), constants.size() * 4, constants.data()};
+  }
+};
+
+}  // namespace
+
+Bound storage(const Buffer& buffer) {
+  return {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .buffer = {buffer.handle, 0, VK_WHOLE_SIZE}};
+}
+
+Bound uniform(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size) {
+  return {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, .buffer = {buffer.handle, offset, size}};
+}
+
+Bound sampled(VkImageView view, VkSampler sampler, VkImageLayout layout) {
+  return {.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, .image = {sampler, view, layout}};
+}
+
+Bound storage_image(const Image& image) {
+  return {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .image = {VK_NULL_HANDLE, image.view, VK_IMAGE_LAYOUT_GENERAL}};
+}
+
+Pipeline make_compute_pipeline(const Device& device, const LayoutInfo& layout, std::span<const uint32_t> spirv,
+                               const Constants& constants) {
+  Pipeline pipeline{.bind_point = VK_PIPELINE_BIND_POINT_COMPUTE};
+  make_layout(device, layout, pipeline);
+  const auto module = make_module(device, spirv);
+  const Specialization specialization(constants);
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                   .module = module,
+                                                   .pName = "main",
+                                                   .pSpecializationInfo = &specialization.info},
+                                         .layout = pipeline.layout};
+  VkPipeline handle = VK_NULL_HANDLE;
+  check(vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
+  pipeline.handle = {device.handle, handle, vkDestroyPipeline};
+  return pipeline;
+}
+
+Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
+  Pipeline pipeline;
+  make_layout(device, in.layout, pipeline);
+  const Specialization specialization(in.constants);
+  const auto vertex = make_module(device, in.vertex);
+  Owned<VkShaderModule> fragment;
+  std::vector<VkPipelineShaderStageCreateInfo> stages{{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                       .stage = VK_SHADER_STAGE_VERTEX_BIT,
+                                                       .module = vertex,
+                                                       .pName = "main",
+                                                       .pSpecializationInfo = &specialization.info}};
+  if (!in.fragment.empty()) {
+    fragment = make_module(device, in.fragment);
+    stages.push_back(stages[0]);
+    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
+    stages[1].module = fragment;
+  }
+
+  std::vector<VkVertexInputBindingDescription> streams;
+  std::vector<VkVertexInputAttributeDescription> attributes;
+  for (const VertexStream& stream : in.streams) {
+    const auto binding = static_cast<uint32_t>(streams.size());
+    streams.push_back({binding, stream.stride_bytes, VK_VERTEX_INPUT_RATE_VERTEX});
+    for (auto attribute : stream.attributes) {
+      attribute.binding = binding;
+      attributes.push_back(attribute);
+    }
+  }
+  const VkPipelineVertexInputStateCreateInfo vertex_input{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+      .vertexBindingDescriptionCount = static_cast<uint32_t>(streams.size()),
+      .pVertexBindingDescriptions = streams.data(),
+      .vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size()),
+      .pVertexAttributeDescriptions = attributes.data()};
+  const VkPipelineInputAssemblyStateCreateInfo assembly{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+      .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+  const VkPipelineViewportStateCreateInfo viewport{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
+  const VkPipelineRasterizationStateCreateInfo raster{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+      .polygonMode = VK_POLYGON_MODE_FILL,
+      .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
+      .lineWidth = 1.0f};
+  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  const VkPipelineDepthStencilStateCreateInfo depth{.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+                                                    .depthTestEnable = VK_TRUE,
+                                                    .depthWriteEnable = VK_TRUE,
+                                                    .depthCompareOp = VK_COMPARE_OP_GREATER};
+  const std::vector<VkPipelineColorBlendAttachmentState> blends(in.colors.size(), {.colorWriteMask = 0xF});
+  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+                                                  .attachmentCount = static_cast<uint32_t>(blends.size()),
+                                                  .pAttachments = blends.data()};
+  constexpr VkDynamicState dynamic_states[]{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_CULL_MODE};
+  const VkPipelineDynamicStateCreateInfo dynamic{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, .dynamicStateCount = 3, .pDynamicStates = dynamic_states};
+  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                                .colorAttachmentCount = static_cast<uint32_t>(in.colors.size()),
+                                                .pColorAttachmentFormats = in.colors.data(),
+                                                .depthAttachmentFormat = in.depth};
+  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                          .pNext = &rendering,
+                                          .stageCount = static_cast<uint32_t>(stages.size()),
+                                          .pStages = stages.data(),
+                                          .pVertexInputState = &vertex_input,
+                                          .pInputAssemblyState = &assembly,
+                                          .pViewportState = &viewport,
+                                          .pRasterizationState = &raster,
+                                          .pMultisampleState = &samples,
+                                          .pDepthStencilState = &depth,
+                                          .pColorBlendState = &blend,
+                                          .pDynamicState = &dynamic,
+                                          .layout = pipeline.layout};
+  VkPipeline handle = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateGraphicsPipelines");
+  pipeline.handle = {device.handle, handle, vkDestroyPipeline};
+  return pipeline;
+}
+
+void bind(VkCommandBuffer cmd, const Pipeline& pipeline, std::initializer_list<Bound> resources) {
+  std::vector<VkWriteDescriptorSet> writes;
+  for (const Bound& bound : resources)
+    writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                      .dstBinding = static_cast<uint32_t>(writes.size()),
+                      .descriptorCount = 1,
+                      .descriptorType = bound.type,
+                      .pImageInfo = &bound.image,
+                      .pBufferInfo = &bound.buffer});
+  vkCmdBindPipeline(cmd, pipeline.bind_point, pipeline.handle);
+  vkCmdPushDescriptorSetKHR(cmd, pipeline.bind_point, pipeline.layout, 0, static_cast<uint32_t>(writes.size()),
+                            writes.data());
+}
+
+void dispatch(VkCommandBuffer cmd, const Device& device, uint64_t threads, uint32_t group) {
+  const uint64_t groups = (threads + group - 1) / group;
+  if (groups == 0) return;
+  const uint64_t x = std::min<uint64_t>(groups, device.limits.maxComputeWorkGroupCount[0]);
+  const uint64_t y = (groups + x - 1) / x;
+  if (y > device.limits.maxComputeWorkGroupCount[1]) throw Error("a dispatch is too large for this device");
+  vkCmdDispatch(cmd, static_cast<uint32_t>(x), static_cast<uint32_t>(y), 1);
+}
+
+}  // namespace chandelier::gpu

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/timers.h"
+
+namespace chandelier::gpu {
+namespace {
+constexpr uint32_t max_queries = 4096;
+}
+
+Timers::Timers(const Device& device) : device_(&device), ms_per_tick_(device.limits.timestampPeriod * 1e-6) {
+  const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                   .queryCount = max_queries};
+  VkQueryPool pool = VK_NULL_HANDLE;
+  check(vkCreateQueryPool(device.handle, &info, nullptr, &pool), "vkCreateQueryPool");
+  pool_ = {device.handle, pool, vkDestroyQueryPool};
+}
+
+void Timers::start_frame(VkCommandBuffer cmd) {
+  stages_.clear();
+  spans_.clear();
+  used_ = 0;
+  vkCmdResetQueryPool(cmd, pool_, 0, max_queries);
+}
+
+size_t Timers::stage_number(const char* name) {
+  for (size_t i = 0; i < stages_.size(); ++i)
+    if (stages_[i].name == name) return i;
+  stages_.push_back({name});
+  return stages_.size() - 1;
+}
+
+void Timers::begin(VkCommandBuffer cmd, const char* stage) {
+  const bool room = used_ + 2 <= max_queries;
+  spans_.push_back({stage_number(stage), room ? used_ : UINT32_MAX});
+  if (room) {
+    vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, used_);
+    used_ += 2;
+  }
+  begun_ = std::chrono::steady_clock::now();
+}
+
+void Timers::end(VkCommandBuffer cmd) {
+  const Span& span = spans_.back();
+  stages_[span.stage].cpu_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun_).count();
+  if (span.first_query != UINT32_MAX)
+    vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, span.first_query + 1);
+}
+
+void Timers::add_cpu(const char* stage, double cpu_ms) { stages_[stage_number(stage)].cpu_ms += cpu_ms; }
+
+std::vector<Timers::Stage> Timers::read() {
+  std::vector<uint64_t> ticks(used_);
+  if (used_)
+    check(vkGetQueryPoolResults(device_->handle, pool_, 0, used_, ticks.size() * 8, ticks.data(), 8,
+                                VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+          "vkGetQueryPoolResults");
+  for (const Span& span : spans_)
+    if (span.first_query != UINT32_MAX)
+      stages_[span.stage].gpu_ms +=
+          static_cast<double>(ticks[span.first_query + 1] - ticks[span.first_query]) * ms_per_tick_;
+  return stages_;
+}
+
+}  // namespace chandelier::gpu

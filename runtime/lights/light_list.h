@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The select stage: which lights are in view, and which of them share a shadow map.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "frame/camera.h"
+#include "frame/recipe.h"
+#include "frame_schema.h"
+#include "pack_schema.h"
+
+namespace chandelier {
+
+/// The lights that can reach something in view, those of one shadow map after each other, maps in ascending order of
+/// their centre's number in the pack: with one light per map that is the pack's order.
+struct LightList {
+  std::vector<frame::FrameLight> lights;
+  std::vector<frame::ShadowMap> maps;  // cube, first_view and view_count are still open
+  std::vector<uint32_t> first_light;   // of each map, and one past the last
+  std::vector<uint32_t> pack_light;    // number in the pack, of each of `lights`
+};
+
+/// Point and spot lights may be clustered; a directional light always has a map of its own.
+LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect);
+
+}  // namespace chandelier

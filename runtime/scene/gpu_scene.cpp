@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gpu_scene.h"
+
+#include <algorithm>
+
+#include "scene/textures.h"
+
+namespace chandelier {
+namespace {
+
+constexpr VkBufferUsageFlags storage_use = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+constexpr VkBufferUsageFlags vertex_use = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
+
+template <typename T>
+gpu::Buffer upload(const gpu::Device& device, std::span<const T> records, VkBufferUsageFlags usage, const char* what) {
+  if ((usage & storage_use) && records.size_bytes() > device.limits.maxStorageBufferRange)
+    throw gpu::Error(std::string(what) + " do not fit a storage buffer of this device (" +
+                     std::to_string(records.size_bytes()) + " of " +
+                     std::to_string(device.limits.maxStorageBufferRange) + " bytes)");
+  return gpu::upload_buffer(device, std::as_bytes(records), usage);
+}
+
+std::vector<MaterialRun> find_runs(const pack::View& pack) {
+  std::vector<MaterialRun> runs;
+  for (uint32_t i = 0; i < pack.batch_instances.size(); ++i) {
+    const uint32_t material = pack.batches[pack.batch_instances[i].batch].material;
+    if (runs.empty() || runs.back().material != material) runs.push_back({material, i, 0});
+    ++runs.back().count;
+  }
+  return runs;
+}
+
+void upload_runs(const gpu::Device& device, const pack::View& pack, GpuScene& scene) {
+  scene.runs = find_runs(pack);
+  const auto masked = [&](const MaterialRun& run) {
+    return pack.materials[run.material].alpha_mode == pack::AlphaMode::mask;
+  };
+  scene.opaque_runs = static_cast<uint32_t>(std::find_if(scene.runs.begin(), scene.runs.end(), masked) - scene.runs.begin());
+  std::vector<uint32_t> first_of_run;
+  std::vector<uint32_t> run_of_batch_instance;
+  for (const MaterialRun& run : scene.runs) {
+    run_of_batch_instance.insert(run_of_batch_instance.end(), run.count, static_cast<uint32_t>(first_of_run.size()));
+    first_of_run.push_back(run.first);
+  }
+  scene.material_runs = upload<uint32_t>(device, first_of_run, storage_use, "material runs");
+  scene.run_of_batch_instance = upload<uint32_t>(device, run_of_batch_instance, storage_use, "batch instances");
+}
+
+}  // namespace
+
+GpuScene upload_scene(const gpu::Device& device, const pack::File& file) {
+  const pack::View& pack = file.view();
+  GpuScene scene;
+  scene.positions = upload(device, pack.positions, vertex_use, "positions");
+  scene.vertex_attributes = upload(device, pack.vertex_attributes, vertex_use, "vertex attributes");
+  scene.indices = upload(device, pack.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices");
+  scene.batches = upload(device, pack.batches, storage_use, "batches");
+  scene.instances = upload(device, pack.instances, storage_use, "instances");
+  scene.batch_instances = upload(device, pack.batch_instances, storage_use, "batch instances");
+  scene.materials = upload(device, pack.materials, storage_use, "materials");
+  scene.batch_instance_count = static_cast<uint32_t>(pack.batch_instances.size());
+  upload_runs(device, pack, scene);
+  for (const pack::Material& material : pack.materials) scene.double_sided.push_back(material.double_sided != 0);
+  upload_textures(device, pack, scene);
+  scene.lights.assign(pack.lights.begin(), pack.lights.end());
+  scene.bounds = {pack.bake_info->bounds_min_ws, pack.bake_info->bounds_max_ws};
+  return scene;
+}
+
+std::vector<gpu::VertexStream> position_stream() {
+  return {{sizeof(pack::Position), {{.location = 0, .format = VK_FORMAT_R32G32B32_SFLOAT, .offset = 0}}}};
+}
+
+std::vector<gpu::VertexStream> position_and_attribute_streams() {
+  auto streams = position_stream();
+  using V = pack::VertexAttributes;
+  streams.push_back({sizeof(V),
+                     {{.location = 1, .format = VK_FORMAT_R32G32B32_SFLOAT, .offset = offsetof(V, normal_ls)},
+                      {.location = 2, .format = VK_FORMAT_R32G32B32A32_SFLOAT, .offset = offsetof(V, tangent_ls)},
+                      {.location = 3, .format = VK_FORMAT_R32G32_SFLOAT, .offset = offsetof(V, uv0)},
+                      {.location = 4, .format = VK_FORMAT_R32G32_SFLOAT, .offset = offsetof(V, uv1)},
+                      {.location = 5, .format = VK_FORMAT_R8G8B8A8_UNORM, .offset = offsetof(V, color)}}});
+  return streams;
+}
+
+}  // namespace chandelier

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pack's geometry, materials and textures as the GPU reads them; its lights stay on the CPU, where they are selected.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "gpu/pipelines.h"
+#include "pack_file.h"
+
+namespace chandelier {
+
+/// Batch instances [first, first + count) share one material: one indirect draw.
+struct MaterialRun {
+  uint32_t material;
+  uint32_t first;
+  uint32_t count;
+};
+
+struct Bounds {
+  glm::vec3 min_ws{0.0f};
+  glm::vec3 max_ws{0.0f};
+};
+
+struct GpuScene {
+  gpu::Buffer positions;          // vertex stream: pack Position
+  gpu::Buffer vertex_attributes;  // vertex stream: pack VertexAttributes
+  gpu::Buffer indices;
+  gpu::Buffer batches;
+  gpu::Buffer instances;
+  gpu::Buffer batch_instances;
+  gpu::Buffer materials;
+  gpu::Buffer material_runs;           // pack order: first batch instance of each run
+  gpu::Buffer run_of_batch_instance;   // one u32 each
+  uint32_t batch_instance_count = 0;
+
+  std::vector<MaterialRun> runs;
+  uint32_t opaque_runs = 0;            // the runs before the first masked one
+  std::vector<bool> double_sided;      // per material
+  std::vector<gpu::Image> images;      // the pack's, then one white texel
+  std::vector<gpu::Owned<VkSampler>> samplers;
+  gpu::Owned<VkDescriptorSetLayout> material_layout;  // set 1: the five textures of a material
+  gpu::Owned<VkDescriptorPool> material_pool;
+  std::vector<VkDescriptorSet> material_sets;
+
+  std::vector<pack::Light> lights;
+  Bounds bounds;
+};
+
+/// Throws gpu::Error, also where the scene is too large for the device.
+GpuScene upload_scene(const gpu::Device& device, const pack::File& pack);
+
+/// The vertex streams of GpuScene: positions alone for depth, both for shading.
+std::vector<gpu::VertexStream> position_stream();
+std::vector<gpu::VertexStream> position_and_attribute_streams();
+
+}  // namespace chandelier

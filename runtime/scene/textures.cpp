@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/textures.h"
+
+#include <algorithm>
+#include <array>
+
+namespace chandelier {
+namespace {
+
+constexpr uint32_t textures_per_material = 5;
+constexpr gpu::ImageUse nothing_yet{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_NONE, VK_ACCESS_2_NONE};
+constexpr gpu::ImageUse copied_to{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
+                                  VK_ACCESS_2_TRANSFER_WRITE_BIT};
+constexpr gpu::ImageUse read_by_fragments{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                          VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+
+VkFormat format_of(const pack::Image& image) {
+  return image.format == pack::ImageFormat::rgba8_srgb ? VK_FORMAT_R8G8B8A8_SRGB
+                                                                              : VK_FORMAT_R8G8B8A8_UNORM;
+}
+
+gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std::span<const std::byte> texels) {
+  if (std::max(info.width, info.height) > device.limits.maxImageDimension2D)
+    throw gpu::Error("an image of " + std::to_string(info.width) + " x " + std::to_string(info.height) +
+                     " texels is too large for this device");
+  gpu::Image image = gpu::make_image(device, {.format = format_of(info),
+                                              .width = info.width,
+                                              .height = info.height,
+                                              .levels = info.level_count,
+                                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+  gpu::Buffer staging = gpu::make_buffer(device, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::upload);
+  std::copy(texels.begin(), texels.end(), staging.mapped);
+  std::vector<VkBufferImageCopy> copies;
+  VkDeviceSize offset = 0;
+  for (uint32_t level = 0; level < info.level_count; ++level) {
+    const uint32_t width = std::max(1u, info.width >> level);
+    const uint32_t height = std::max(1u, info.height >> level);
+    copies.push_back({.bufferOffset = offset,
+                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1},
+                      .imageExtent = {width, height, 1}});
+    offset += VkDeviceSize{4} * width * height;
+  }
+  gpu::run_once(device, [&](VkCommandBuffer cmd) {
+    gpu::image_barrier(cmd, image, nothing_yet, copied_to);
+    vkCmdCopyBufferToImage(cmd, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                           static_cast<uint32_t>(copies.size()), copies.data());
+    gpu::image_barrier(cmd, image, copied_to, read_by_fragments);
+  });
+  return image;
+}
+
+VkSamplerAddressMode address_mode(pack::Wrap wrap) {
+  switch (wrap) {
+    case pack::Wrap::clamp_to_edge: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    case pack::Wrap::mirrored_repeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    default: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  }
+}
+
+// One sampler per combination of wraps and filters; 3 * 3 * 2 * 2 of them.
+uint32_t sampler_number(const pack::Texture& t) {
+  const auto number = [](auto value) { return static_cast<uint32_t>(value); };
+  return ((number(t.wrap_u) * 3 + number(t.wrap_v)) * 2 + number(t.mag_filter)) * 2 + number(t.min_filter);
+}
+
+std::vector<gpu::Owned<VkSampler>> make_samplers(const gpu::Device& device) {
+  std::vector<gpu::Owned<VkSampler>> samplers;
+  for (uint32_t i = 0; i < 36; ++i) {
+    const bool min_linear = i % 2 == 1;
+    const bool mag_linear = i / 2 % 2 == 1;
+    // Anisotropy is left out: lavapipe does it in software at many times the cost of a trilinear fetch.
+    samplers.push_back(gpu::make_sampler(
+        device, {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                 .magFilter = mag_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST,
+                 .minFilter = min_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST,
+                 .mipmapMode = min_linear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                 .addressModeU = address_mode(static_cast<pack::Wrap>(i / 12)),
+                 .addressModeV = address_mode(static_cast<pack::Wrap>(i / 4 % 3)),
+                 .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                 .maxLod = VK_LOD_CLAMP_NONE}));
+  }
+  return samplers;
+}
+
+void make_material_layout(const gpu::Device& device, uint32_t materials, GpuScene& scene) {
+  std::array<VkDescriptorSetLayoutBinding, textures_per_material> bindings{};
+  for (uint32_t i = 0; i < textures_per_material; ++i)
+    bindings[i] = {.binding = i,
+                   .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                   .descriptorCount = 1,
+                   .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT};
+  const VkDescriptorSetLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                                    .bindingCount = textures_per_material,
+                                                    .pBindings = bindings.data()};
+  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+  gpu::check(vkCreateDescriptorSetLayout(device.handle, &layout_info, nullptr, &layout), "vkCreateDescriptorSetLayout");
+  scene.material_layout = {device.handle, layout, vkDestroyDescriptorSetLayout};
+
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, std::max(1u, materials) * textures_per_material};
+  const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                             .maxSets = std::max(1u, materials),
+                                             .poolSizeCount = 1,
+                                             .pPoolSizes = &size};
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  gpu::check(vkCreateDescriptorPool(device.handle, &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
+  scene.material_pool = {device.handle, pool, vkDestroyDescriptorPool};
+}
+
+// A texture that is absent is white: a driver may read a descriptor on a branch that is not taken.
+VkDescriptorImageInfo describe(const pack::View& pack, const GpuScene& scene, uint32_t texture) {
+  const bool absent = texture == pack::none;
+  const gpu::Image& image = absent ? scene.images.back() : scene.images[pack.textures[texture].image];
+  const uint32_t sampler = absent ? 0 : sampler_number(pack.textures[texture]);
+  return {scene.samplers[sampler], image.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+}
+
+VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& pack, const GpuScene& scene,
+                                  const pack::Material& material) {
+  const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                         .descriptorPool = scene.material_pool,
+                                         .descriptorSetCount = 1,
+                                         .pSetLayouts = scene.material_layout.address()};
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  gpu::check(vkAllocateDescriptorSets(device.handle, &info, &set), "vkAllocateDescriptorSets");
+  const uint32_t textures[textures_per_material]{material.base_color_texture, material.metallic_roughness_texture,
+                                                 material.normal_texture, material.occlusion_texture,
+                                                 material.emissive_texture};
+  for (uint32_t i = 0; i < textures_per_material; ++i) {
+    const VkDescriptorImageInfo image = describe(pack, scene, textures[i]);
+    const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                     .dstSet = set,
+                                     .dstBinding = i,
+                                     .descriptorCount = 1,
+                                     .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                     .pImageInfo = &image};
+    vkUpdateDescriptorSets(device.handle, 1, &write, 0, nullptr);
+  }
+  return set;
+}
+
+}  // namespace
+
+void upload_textures(const gpu::Device& device, const pack::View& pack, GpuScene& scene) {
+  for (const pack::Image& image : pack.images)
+    scene.images.push_back(upload_image(device, image, pack.image_data.subspan(image.first_byte, image.size_bytes)));
+  const std::array<std::byte, 4> white{std::byte{255}, std::byte{255}, std::byte{255}, std::byte{255}};
+  scene.images.push_back(upload_image(
+      device, {.width = 1, .height = 1, .level_count = 1, .format = pack::ImageFormat::rgba8_unorm},
+      white));
+  scene.samplers = make_samplers(device);
+  make_material_layout(device, static_cast<uint32_t>(pack.materials.size()), scene);
+  for (const pack::Material& material : pack.materials)
+    scene.material_sets.push_back(make_material_set(device, pack, scene, material));
+}
+
+}  // namespace chandelier

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The g-buffer's surfaces, and the radiance that needs no light: emission and ambient.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame_schema.glsl"
+#include "pack_schema.glsl"
+#include "shading/material.glsl"
+#include "shading/surface.glsl"
+
+layout(binding = 0, scalar) readonly buffer Views { ViewConstants view; };
+layout(binding = 3, scalar) readonly buffer Materials { Material materials[]; };
+
+layout(location = 0) in vec3 position_from_eye;
+layout(location = 1) in vec3 normal_ws;
+layout(location = 2) in vec4 tangent_ws;
+layout(location = 3) in vec4 uv0_uv1;
+layout(location = 4) in vec4 color;
+layout(location = 5) flat in uint material_number;
+
+layout(location = 0) out uvec4 surface_bits;
+layout(location = 1) out vec4 radiance;
+
+// glTF: tangent space with x along the tangent, y along cross(normal, tangent) * w.
+vec3 bent_normal(Material m, vec3 n) {
+  vec3 t = tangent_ws.xyz - n * dot(n, tangent_ws.xyz);
+  if (m.normal_texture == NONE || dot(t, t) < 1e-12) return n;
+  t = normalize(t);
+  vec3 sampled = texture(normal_map, uv_of(m, 2u, uv0_uv1)).xyz * 2.0 - 1.0;
+  sampled.xy *= m.normal_scale;
+  return normalize(sampled.x * t + sampled.y * cross(n, t) * tangent_ws.w + sampled.z * n);
+}
+
+void main() {
+  Material m = materials[material_number];
+  vec4 base = m.base_color_factor * color * texture(base_color_map, uv_of(m, 0u, uv0_uv1));
+  if (m.alpha_mode == ALPHA_MODE_MASK && base.a < m.alpha_cutoff) discard;
+
+  vec3 facet = cross(dFdx(position_from_eye), dFdy(position_from_eye));
+  facet = dot(facet, position_from_eye) > 0.0 ? -facet : facet;
+  vec3 n = dot(normal_ws, normal_ws) > 0.0 ? normalize(normal_ws) : vec3(0.0, 1.0, 0.0);
+  facet = dot(facet, facet) > 0.0 ? normalize(facet) : n;
+  vec3 bent = bent_normal(m, n);
+  if (!gl_FrontFacing) bent = -bent;
+
+  vec2 metal_rough = vec2(m.metallic_factor, m.roughness_factor);
+  if (m.metallic_roughness_texture != NONE)
+    metal_rough *= texture(metallic_roughness_map, uv_of(m, 1u, uv0_uv1)).bg;
+  vec3 emissive = m.emissive;
+  if (m.emissive_texture != NONE) emissive *= texture(emissive_map, uv_of(m, 4u, uv0_uv1)).rgb;
+  float occlusion = 1.0;
+  if (m.occlusion_texture != NONE)
+    occlusion += m.occlusion_strength * (texture(occlusion_map, uv_of(m, 3u, uv0_uv1)).r - 1.0);
+
+  surface_bits = pack_surface(Surface(bent, facet, base.rgb, metal_rough.x, metal_rough.y));
+  radiance = vec4(emissive + view.ambient * occlusion * base.rgb, 1.0);
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The g-buffer stage: what the camera sees, one multi-draw-indirect per material.
+#pragma once
+
+#include "frame/targets.h"
+#include "shadows/cull/cull.h"
+
+namespace chandelier {
+
+gpu::Pipeline make_g_buffer_pipeline(const gpu::Device& device, const GpuScene& scene);
+
+/// Draws what `lists` kept for the camera into surface, depth and radiance; leaves the first two ready to be sampled and
+/// radiance as a storage image.
+void record_g_buffer(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const DrawLists& lists,
+                     const gpu::Buffer& view, const Targets& targets);
+
+}  // namespace chandelier

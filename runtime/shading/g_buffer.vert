@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The g-buffer's vertices. A draw's first_instance is its own number among the draws.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "frame_schema.glsl"
+#include "pack_schema.glsl"
+#include "scene/instance.glsl"
+
+layout(binding = 0, scalar) readonly buffer Views { ViewConstants view; };
+layout(binding = 1, scalar) readonly buffer Draws { CasterDraw draws[]; };
+layout(binding = 2, scalar) readonly buffer Instances { Instance instances[]; };
+
+layout(location = 0) in vec3 position_ls;
+layout(location = 1) in vec3 normal_ls;
+layout(location = 2) in vec4 tangent_ls;
+layout(location = 3) in vec2 uv0_in;
+layout(location = 4) in vec2 uv1_in;
+layout(location = 5) in vec4 color_in;
+
+layout(location = 0) out vec3 position_from_eye;
+layout(location = 1) out vec3 normal_ws;
+layout(location = 2) out vec4 tangent_ws;
+layout(location = 3) out vec4 uv0_uv1;
+layout(location = 4) out vec4 color;
+layout(location = 5) flat out uint material;
+
+void main() {
+  CasterDraw draw = draws[gl_InstanceIndex];
+  vec4 rows[3] = instances[draw.instance].world_from_local;
+  vec3 p = to_world(rows, position_ls);
+  position_from_eye = p - view.eye_ws;
+  normal_ws = normal_to_world(rows, normal_ls);
+  // The bitangent's sign refers to the unmirrored frame.
+  float mirror = determinant(mat3(rows[0].xyz, rows[1].xyz, rows[2].xyz)) < 0.0 ? -1.0 : 1.0;
+  tangent_ws = vec4(direction_to_world(rows, tangent_ls.xyz), tangent_ls.w * mirror);
+  uv0_uv1 = vec4(uv0_in, uv1_in);
+  color = color_in;
+  material = draw.material;
+  gl_Position = mat4(view.clip_from_world[0], view.clip_from_world[1], view.clip_from_world[2], view.clip_from_world[3]) *
+                vec4(p, 1.0);
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shading/tone_map.h"
+
+#include "frame_schema.h"
+#include "shaders/exposure_comp.h"
+#include "shaders/tone_map_comp.h"
+
+namespace chandelier {
+namespace {
+
+uint32_t groups(uint32_t width, uint32_t height) { return (width + 15) / 16 * ((height + 15) / 16); }
+
+void computed_before_compute(VkCommandBuffer cmd) {
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+}
+
+}  // namespace
+
+TonePipelines make_tone_pipelines(const gpu::Device& device) {
+  constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  constexpr auto image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  const gpu::LayoutInfo exposure{.bindings = {image, buffer}, .push_bytes = sizeof(frame::ToneConstants)};
+  return {gpu::make_compute_pipeline(device, exposure, exposure_comp, {0}),
+          gpu::make_compute_pipeline(device, exposure, exposure_comp, {1}),
+          gpu::make_compute_pipeline(device, {.bindings = {image, buffer, image}}, tone_map_comp)};
+}
+
+gpu::Buffer make_luminance_sums(const gpu::Device& device, uint32_t width, uint32_t height) {
+  return gpu::make_buffer(device, groups(width, height) * sizeof(frame::LogLuminance),
+                          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::device);
+}
+
+void record_tone_map(VkCommandBuffer cmd, const TonePipelines& pipelines, std::optional<float> exposure_ev,
+                     const gpu::Buffer& sums, const Targets& targets) {
+  const uint32_t group_count = groups(targets.width, targets.height);
+  const frame::ToneConstants constants{
+      .exposure_ev = exposure_ev.value_or(0.0f), .automatic = exposure_ev ? 0u : 1u, .group_count = group_count};
+  gpu::image_barrier(cmd, targets.radiance, use::storage, use::storage);
+  gpu::bind(cmd, pipelines.sum, {gpu::storage_image(targets.radiance), gpu::storage(sums)});
+  gpu::push_constants(cmd, pipelines.sum, constants);
+  vkCmdDispatch(cmd, group_count, 1, 1);
+  computed_before_compute(cmd);
+  gpu::bind(cmd, pipelines.expose, {gpu::storage_image(targets.radiance), gpu::storage(sums)});
+  gpu::push_constants(cmd, pipelines.expose, constants);
+  vkCmdDispatch(cmd, 1, 1, 1);
+  computed_before_compute(cmd);
+  gpu::image_barrier(cmd, targets.shown, use::nothing, use::storage);
+  gpu::bind(cmd, pipelines.tone_map,
+            {gpu::storage_image(targets.radiance), gpu::storage(sums), gpu::storage_image(targets.shown)});
+  vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
+  gpu::image_barrier(cmd, targets.shown, use::storage, use::copied);
+}
+
+}  // namespace chandelier

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shadows/cull/cull.h"
+
+#include <algorithm>
+
+#include "shaders/cull_light_frustum_comp.h"
+#include "shaders/cull_none_comp.h"
+
+namespace chandelier {
+
+CullPipelines make_cull_pipelines(const gpu::Device& device) {
+  const gpu::LayoutInfo layout{.bindings = std::vector<VkDescriptorType>(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                               .push_bytes = sizeof(frame::CullConstants)};
+  return {gpu::make_compute_pipeline(device, layout, cull_none_comp),
+          gpu::make_compute_pipeline(device, layout, cull_light_frustum_comp)};
+}
+
+DrawLists make_draw_lists(const gpu::Device& device, const GpuScene& scene, uint64_t draws) {
+  static_assert(sizeof(frame::CasterDraw) == frame::caster_draw_stride);
+  const uint64_t bytes = draws * sizeof(frame::CasterDraw);
+  if (bytes > device.limits.maxStorageBufferRange)
+    throw gpu::Error("the scene has too many batches for this device (" + std::to_string(scene.batch_instance_count) + ")");
+  constexpr VkBufferUsageFlags usage =
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  return {gpu::make_buffer(device, bytes, usage, gpu::Memory::device),
+          gpu::make_buffer(device, 4 * (scene.runs.size() + 1), usage, gpu::Memory::device), draws};
+}
+
+std::vector<DrawList> lists_by_material(const GpuScene& scene) {
+  std::vector<DrawList> lists;
+  for (const MaterialRun& run : scene.runs)
+    lists.push_back({static_cast<uint32_t>(lists.size()), run.first, run.count, run.material});
+  return lists;
+}
+
+std::vector<DrawList> lists_for_shadows(const GpuScene& scene) {
+  const auto all = lists_by_material(scene);
+  const uint32_t opaque = scene.opaque_runs < scene.runs.size() ? scene.runs[scene.opaque_runs].first : scene.batch_instance_count;
+  std::vector<DrawList> lists{{0, 0, opaque, pack::none}};
+  // Without an opaque run list 0 is the first masked one's number: number the masked ones as cull.glsl does.
+  for (uint32_t run = scene.opaque_runs; run < all.size(); ++run) {
+    lists.push_back(all[run]);
+    lists.back().number = run + 1 - std::max(1u, scene.opaque_runs);
+  }
+  return lists;
+}
+
+void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,
+                 const CullInput& input, const DrawLists& lists) {
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_NONE,
+                      VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE);
+  vkCmdFillBuffer(cmd, lists.counts.handle, 0, VK_WHOLE_SIZE, 0);
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                      VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                      VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
+  const frame::CullConstants constants{.batch_instance_count = scene.batch_instance_count,
+                                       .first_view = input.first_view,
+                                       .view_count = input.view_count,
+                                       .merged_runs = input.merged_runs,
+                                       .round = input.round};
+  gpu::bind(cmd, pipeline,
+            {gpu::storage(input.views), gpu::storage(scene.batch_instances), gpu::storage(scene.batches),
+             gpu::storage(scene.material_runs), gpu::storage(scene.run_of_batch_instance), gpu::storage(lists.draws),
+             gpu::storage(lists.counts), gpu::storage(input.counters)});
+  gpu::push_constants(cmd, pipeline, constants);
+  gpu::dispatch(cmd, device, uint64_t{scene.batch_instance_count} * input.view_count, frame::cull_group_size);
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
+                      VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+}
+
+void draw_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list, uint32_t view_count) {
+  if (list.batch_instances == 0) return;
+  vkCmdDrawIndexedIndirectCount(cmd, lists.draws.handle,
+                                VkDeviceSize{list.first_batch_instance} * view_count * sizeof(frame::CasterDraw),
+                                lists.counts.handle, list.number * 4, list.batch_instances * view_count,
+                                frame::caster_draw_stride);
+}
+
+}  // namespace chandelier

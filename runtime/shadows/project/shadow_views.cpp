@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cube faces follow Vulkan's table of cube map axes, so that a face drawn here is what a cube sampler reads.
+#include "shadows/project/shadow_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chandelier {
+namespace {
+
+std::array<glm::vec4, 4> columns(const glm::vec4& x, const glm::vec4& y, const glm::vec4& z, const glm::vec4& w) {
+  const glm::mat4 m = glm::transpose(glm::mat4(x, y, z, w));
+  return {m[0], m[1], m[2], m[3]};
+}
+
+// Depth is near / distance along the major axis: it does not depend on the light's range, so lights that share a map
+// read the same values as if each had its own.
+frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t map_number, uint32_t face, float texel_m) {
+  const CubeFace axes = cube_face(face);
+  const auto row = [&](const glm::vec3& axis) { return glm::vec4(axis, -glm::dot(axis, map.center_ws)); };
+  return {.clip_from_world = columns(row(axes.s), row(axes.t), glm::vec4(0, 0, 0, frame::shadow_near_m), row(axes.major)),
+          .center_ws = map.center_ws,
+          .range_m = map.range_m,
+          .layer = face,
+          .shadow_map = map_number,
+          .texel_m = texel_m,
+          .far_m = 0.0f};
+}
+
+// Does the cone reach the square pyramid of a face? The face lies within acos(1/sqrt(3)) of its axis.
+bool cone_touches(const CubeFace& face, const frame::FrameLight& light) {
+  const float outer_cos = -light.cone_offset / light.cone_scale;
+  const float to_axis = std::acos(std::clamp(glm::dot(light.direction_ws, face.major), -1.0f, 1.0f));
+  return to_axis <= std::acos(std::clamp(outer_cos, -1.0f, 1.0f)) + std::acos(1.0f / std::sqrt(3.0f));
+}
+
+void project_cube(const LightList& list, uint32_t map_number, float texel_m, std::vector<frame::ShadowView>& views) {
+  const uint32_t first = list.first_light[map_number];
+  const frame::FrameLight& light = list.lights[first];
+  const bool lone_spot = list.first_light[map_number + 1] == first + 1 &&
+                         light.type == static_cast<uint32_t>(pack::LightType::spot);
+  for (uint32_t face = 0; face < 6; ++face)
+    if (!lone_spot || cone_touches(cube_face(face), light))
+      views.push_back(cube_view(list.maps[map_number], map_number, face, texel_m));
+}
+
+std::array<glm::vec3, 8> corners(const Bounds& b) {
+  std::array<glm::vec3, 8> c;
+  for (uint32_t i = 0; i < 8; ++i)
+    c[i] = {i & 1 ? b.max_ws.x : b.min_ws.x, i & 2 ? b.max_ws.y : b.min_ws.y, i & 4 ? b.max_ws.z : b.min_ws.z};
+  return c;
+}
+
+// Splits between logarithmic and even (Zhang et al. 2006, parallel-split shadow maps), metres along the view.
+std::array<float, frame::cascade_count + 1> split_depths(const Camera& camera, const Bounds& bounds) {
+  float far_m = camera.znear_m * 2.0f;
+  for (const glm::vec3& corner : corners(bounds)) far_m = std::max(far_m, glm::dot(corner - camera.eye_ws, camera.forward_ws));
+  const float near_m = std::max(camera.znear_m, far_m * 0.002f);
+  std::array<float, frame::cascade_count + 1> splits{};
+  for (uint32_t i = 0; i <= frame::cascade_count; ++i) {
+    const float t = static_cast<float>(i) / frame::cascade_count;
+    splits[i] = glm::mix(near_m + (far_m - near_m) * t, near_m * std::pow(far_m / near_m, t), 0.75f);
+  }
+  splits[0] = 0.0f;
+  return splits;
+}
+
+struct Sphere {
+  glm::vec3 center_ws;
+  float radius_m;
+};
+
+// Around the piece of the view frustum between two depths; the same size whichever way the camera looks.
+Sphere slice_sphere(const Camera& camera, float aspect, float near_m, float far_m) {
+  const float y = std::tan(camera.yfov_rad * 0.5f);
+  const float corner2 = y * y * (1.0f + aspect * aspect);  // squared half diagonal at one metre
+  const float middle = std::min(far_m, 0.5f * (near_m + far_m) * (1.0f + corner2));
+  const float radius = std::sqrt(corner2 * far_m * far_m + (far_m - middle) * (far_m - middle));
+  return {camera.eye_ws + glm::normalize(camera.forward_ws) * middle, radius};
+}
+
+frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction, const Bounds& bounds, uint32_t map_number,
+                               uint32_t cascade, float far_m, uint32_t face_size_px) {
+  const CameraAxes axes = axes_of({.forward_ws = direction});
+  const float texel_m = 2.0f * sphere.radius_m / static_cast<float>(face_size_px);
+  const auto snapped = [&](const glm::vec3& axis) { return std::floor(glm::dot(axis, sphere.center_ws) / texel_m) * texel_m; };
+  float nearest = INFINITY;  // along the light's way, over the whole scene: casters may stand outside the view
+  float farthest = -INFINITY;
+  for (const glm::vec3& corner : corners(bounds)) {
+    nearest = std::min(nearest, glm::dot(corner, axes.forward));
+    farthest = std::max(farthest, glm::dot(corner, axes.forward));
+  }
+  const float margin = 0.01f + 0.001f * (farthest - nearest);
+  nearest -= margin;
+  farthest += margin;
+  const float scale = 1.0f / sphere.radius_m;
+  const float depth_scale = 1.0f / (farthest - nearest);
+  return {.clip_from_world = columns(glm::vec4(axes.right * scale, -snapped(axes.right) * scale),
+                                     glm::vec4(-axes.up * scale, snapped(axes.up) * scale),
+                                     glm::vec4(-axes.forward * depth_scale, farthest * depth_scale), glm::vec4(0, 0, 0, 1)),
+          .center_ws = glm::vec3(0.0f),
+          .range_m = 0.0f,
+          .layer = cascade,
+          .shadow_map = map_number,
+          .texel_m = texel_m,
+          .far_m = far_m};
+}
+
+void project_cascades(const LightList& list, uint32_t map_number, const Camera& camera, float aspect, const Bounds& bounds,
+                      uint32_t face_size_px, std::vector<frame::ShadowView>& views) {
+  const glm::vec3 direction = list.lights[list.first_light[map_number]].direction_ws;
+  const auto splits = split_depths(camera, bounds);
+  for (uint32_t i = 0; i < frame::cascade_count; ++i)
+    views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), direction, bounds, map_number, i,
+                                 splits[i + 1], face_size_px));
+}
+
+}  // namespace
+
+CubeFace cube_face(uint32_t face) {
+  const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  switch (face) {
+    case 0: return {-z, -y, x};
+    case 1: return {z, -y, -x};
+    case 2: return {x, z, y};
+    case 3: return {x, -z, -y};
+    case 4: return {x, -y, z};
+    default: return {-x, -y, -z};
+  }
+}
+
+std::vector<frame::ShadowView> project_lights(LightList& list, const Camera& camera, float aspect, const Bounds& bounds,
+                                              uint32_t face_size_px) {
+  const float texel_m = 2.0f / static_cast<float>(face_size_px);  // a face is two metres wide at one metre
+  std::vector<frame::ShadowView> views;
+  for (uint32_t i = 0; i < list.maps.size(); ++i) {
+    frame::ShadowMap& map = list.maps[i];
+    map.first_view = static_cast<uint32_t>(views.size());
+    if (map.is_directional)
+      project_cascades(list, i, camera, aspect, bounds, face_size_px, views);
+    else
+      project_cube(list, i, texel_m, views);
+    map.view_count = static_cast<uint32_t>(views.size()) - map.first_view;
+  }
+  return views;
+}
+
+}  // namespace chandelier

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Casters of all views of a round in one pass: each draw chooses its layer. With MASKED also what an alpha test needs.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_ARB_shader_viewport_layer_array : require
+#include "frame_schema.glsl"
+#include "pack_schema.glsl"
+#include "scene/instance.glsl"
+
+layout(binding = 0, scalar) readonly buffer Views { ShadowView views[]; };
+layout(binding = 1, scalar) readonly buffer Draws { CasterDraw draws[]; };
+layout(binding = 2, scalar) readonly buffer Instances { Instance instances[]; };
+
+layout(location = 0) in vec3 position_ls;
+#ifdef MASKED
+layout(location = 3) in vec2 uv0_in;
+layout(location = 4) in vec2 uv1_in;
+layout(location = 5) in vec4 color_in;
+layout(location = 0) out vec4 uv0_uv1;
+layout(location = 1) out float alpha;
+layout(location = 2) flat out uint material;
+#endif
+
+void main() {
+  CasterDraw draw = draws[gl_InstanceIndex];
+  ShadowView view = views[draw.shadow_view];
+  vec3 p = to_world(instances[draw.instance].world_from_local, position_ls);
+  gl_Position = mat4(view.clip_from_world[0], view.clip_from_world[1], view.clip_from_world[2], view.clip_from_world[3]) *
+                vec4(p, 1.0);
+  gl_Layer = int(view.layer);
+#ifdef MASKED
+  uv0_uv1 = vec4(uv0_in, uv1_in);
+  alpha = color_in.a;
+  material = draw.material;
+#endif
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shadows/raster/caster_pass.h"
+
+#include "frame/targets.h"
+#include "shaders/caster_masked_frag.h"
+#include "shaders/caster_masked_vert.h"
+#include "shaders/caster_vert.h"
+
+namespace chandelier {
+namespace {
+
+void begin_pass(VkCommandBuffer cmd, const CubeArray& store, uint32_t cubes) {
+  const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                        .imageView = store.depth.view,
+                                        .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                        .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                        .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+                                        .clearValue = {.depthStencil = {0.0f, 0}}};
+  const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                             .renderArea = {{0, 0}, {store.face_size_px, store.face_size_px}},
+                             .layerCount = 6 * cubes,
+                             .pDepthAttachment = &depth};
+  vkCmdBeginRendering(cmd, &info);
+  set_viewport(cmd, store.face_size_px, store.face_size_px);
+  // Both sides of a surface cast: an open mesh shadows whichever way it faces.
+  vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
+}
+
+}  // namespace
+
+CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene& scene) {
+  std::vector<gpu::VertexStream> with_uv = position_and_attribute_streams();
+  std::erase_if(with_uv[1].attributes, [](const auto& attribute) { return attribute.location < 3; });
+  return {gpu::make_graphics_pipeline(device, {.layout = {.bindings = std::vector<VkDescriptorType>(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)},
+                                               .vertex = caster_vert,
+                                               .streams = position_stream(),
+                                               .depth = VK_FORMAT_D32_SFLOAT}),
+          gpu::make_graphics_pipeline(device, {.layout = {.bindings = std::vector<VkDescriptorType>(4, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                                          .more_sets = {scene.material_layout}},
+                                               .vertex = caster_masked_vert,
+                                               .fragment = caster_masked_frag,
+                                               .streams = with_uv,
+                                               .depth = VK_FORMAT_D32_SFLOAT})};
+}
+
+void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const GpuScene& scene, const DrawLists& lists,
+                    const gpu::Buffer& views, uint32_t view_count, const CubeArray& store, uint32_t cubes) {
+  gpu::image_barrier(cmd, store.depth, use::nothing, use::depth_attachment);
+  begin_pass(cmd, store, cubes);
+  const VkBuffer streams[]{scene.positions.handle, scene.vertex_attributes.handle};
+  const VkDeviceSize offsets[]{0, 0};
+  vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
+  vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
+
+  const auto draw_lists = lists_for_shadows(scene);
+  gpu::bind(cmd, pipelines.opaque, {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances)});
+  draw_list(cmd, lists, draw_lists[0], view_count);
+  if (draw_lists.size() > 1)
+    gpu::bind(cmd, pipelines.masked, {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances),
+                                      gpu::storage(scene.materials)});
+  for (size_t i = 1; i < draw_lists.size(); ++i) {
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.masked.layout, 1, 1,
+                            &scene.material_sets[draw_lists[i].material], 0, nullptr);
+    draw_list(cmd, lists, draw_lists[i], view_count);
+  }
+  vkCmdEndRendering(cmd);
+  gpu::image_barrier(cmd, store.depth, use::depth_attachment, use::sampled);
+}
+
+}  // namespace chandelier

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Store answer `cube-array`: a pool of cubes of one size. A map takes six layers of it; where there are more maps than
+// cubes, the frame draws and shades them in rounds.
+#pragma once
+
+#include "gpu/resources.h"
+
+namespace chandelier {
+
+struct CubeArray {
+  gpu::Image depth;                    // its own view is a 2D array: cascades are read through it, and it is drawn to
+  gpu::Owned<VkImageView> cubes;       // the same layers as a cube array
+  uint32_t face_size_px = 0;
+  uint32_t cube_count = 0;
+};
+
+/// Depth of one cube.
+constexpr uint64_t cube_bytes(uint32_t face_size_px) { return uint64_t{6} * 4 * face_size_px * face_size_px; }
+
+/// How many cubes the pool may have: at least one.
+uint32_t cubes_within(const gpu::Device& device, uint32_t face_size_px, uint64_t budget_bytes);
+
+CubeArray make_cube_array(const gpu::Device& device, uint32_t face_size_px, uint32_t cube_count);
+
+}  // namespace chandelier
