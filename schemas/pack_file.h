@@ -16,7 +16,8 @@ struct Error : std::runtime_error {
 };
 
 /// Writes `contents` to a temporary file beside `path`, syncs it and renames it over `path`; on failure nothing is left
-/// behind and an older pack stays. Same contents, same bytes. Throws Error.
+/// behind and an older pack stays. Same contents, same bytes. Values are not looked at: check() of pack_checks.h says
+/// beforehand whether the pack will open. Throws Error.
 void write(const std::filesystem::path& path, const Contents& contents);
 
 /// A mapped pack. Every offset, count, index, enum and float has been checked when the constructor returns.
