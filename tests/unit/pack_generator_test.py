@@ -7,6 +7,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import pack_schema
+
 SCHEMAS = Path(os.environ["CHANDELIER_SCHEMAS"])
 sys.path.insert(0, str(SCHEMAS))
 import generate  # noqa: E402
@@ -79,6 +81,15 @@ class PackGenerator(unittest.TestCase):
                          ('kind="14"', 'kind="15"')):
             self.assertIn(old, text)
             self.assertNotEqual(self.schema_of(text.replace(old, new)).hash, before, old)
+
+    def test_echo_shaders_compile(self):
+        generated = Path(pack_schema.__file__).parent
+        shaders = sorted((generated / "echo").glob("*.comp"))
+        self.assertGreater(len(shaders), 10)
+        for shader in shaders:
+            run = subprocess.run(["glslangValidator", "--quiet", "-V", "--target-env", "vulkan1.3", f"-I{generated}",
+                                  shader, "-o", Path(self.folder.name) / "echo.spv"], capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, f"{shader.name}: {run.stdout}")
 
     def test_a_stale_format_page_is_refused(self):
         stale = Path(self.folder.name) / "FORMAT.md"
