@@ -67,13 +67,16 @@ constexpr Recipe lightcluster_recipe() {
 }
 
 const std::array preset_list{
-    Preset{"reference", "one shadow map per light in view, hard shadows: what the others are measured against", Recipe{}},
+    Preset{"reference", "one shadow map per light in view, hard shadows: what the others are measured against",
+           Recipe{}},
     Preset{"lightcluster", "one shadow map per light cluster, read by PCF (LightCluster)", lightcluster_recipe()},
 };
 
 }  // namespace
 
-std::span<const StageChoices> stage_choices() { return stages; }
+std::span<const StageChoices> stage_choices() {
+  return stages;
+}
 
 std::string_view answer(const Recipe& recipe, std::size_t stage) {
   return with_answer(recipe, stages[stage].stage,
@@ -81,12 +84,17 @@ std::string_view answer(const Recipe& recipe, std::size_t stage) {
 }
 
 bool set_answer(Recipe& recipe, std::size_t stage, std::string_view name) {
-  return with_answer(recipe, stages[stage].stage, [&](auto& value) { return set_by_name(value, stages[stage].answers, name); });
+  return with_answer(recipe, stages[stage].stage,
+                     [&](auto& value) { return set_by_name(value, stages[stage].answers, name); });
 }
 
-std::span<const std::string_view> distance_scaling_names() { return scaling_names; }
+std::span<const std::string_view> distance_scaling_names() {
+  return scaling_names;
+}
 
-std::span<const Preset> presets() { return preset_list; }
+std::span<const Preset> presets() {
+  return preset_list;
+}
 
 std::optional<std::string> refusal(const Recipe& recipe) {
   const bool clustered = recipe.select == Select::light_clusters;

@@ -21,7 +21,9 @@ namespace chandelier {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start) { return std::chrono::duration<double, std::milli>(Clock::now() - start).count(); }
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 constexpr uint64_t most_draws = uint64_t{1} << 20;  // of a round, unless one light alone needs more: 32 MiB
 
@@ -34,8 +36,9 @@ struct Streamed {
   void write(const gpu::Device& on, VkCommandBuffer cmd, std::span<const T> records) {
     if (device.size_bytes < records.size_bytes() || !device.handle) {
       staging = gpu::make_buffer(on, records.size_bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::upload);
-      device = gpu::make_buffer(on, records.size_bytes(),
-                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::device);
+      device =
+          gpu::make_buffer(on, records.size_bytes(),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::device);
     }
     if (records.empty()) return;
     std::memcpy(staging.mapped, records.data(), records.size_bytes());
@@ -44,7 +47,9 @@ struct Streamed {
   }
 };
 
-std::array<glm::vec4, 4> columns(const glm::mat4& m) { return {m[0], m[1], m[2], m[3]}; }
+std::array<glm::vec4, 4> columns(const glm::mat4& m) {
+  return {m[0], m[1], m[2], m[3]};
+}
 
 frame::ViewConstants view_constants(const RenderSettings& settings, const glm::mat4& clip_from_world) {
   return {.clip_from_world = columns(clip_from_world),
@@ -85,7 +90,7 @@ struct Renderer::Impl {
   DrawLists camera_draws;
   DrawLists shadow_draws;
   Streamed view, lights, maps, views;
-  gpu::Buffer counters;           // one per round, then the camera's
+  gpu::Buffer counters;  // one per round, then the camera's
   gpu::Buffer counters_readback;
   gpu::Buffer exposure_readback;
 
@@ -99,7 +104,8 @@ struct Renderer::Impl {
         tone(make_tone_pipelines(on)),
         timers(on),
         camera_draws(make_draw_lists(on, scene, scene.batch_instance_count)) {
-    exposure_readback = gpu::make_buffer(on, sizeof(frame::LogLuminance), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
+    exposure_readback =
+        gpu::make_buffer(on, sizeof(frame::LuminanceSum), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
   }
 
   FramePlan plan(const RenderSettings& settings);
@@ -145,7 +151,8 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
     store = {};
     store = make_cube_array(device, settings.recipe.face_size_px, cubes);
     // A frame without shadow maps binds the store all the same.
-    gpu::run_once(device, [&](VkCommandBuffer cmd) { gpu::image_barrier(cmd, store.depth, use::nothing, use::sampled); });
+    gpu::run_once(device,
+                  [&](VkCommandBuffer cmd) { gpu::image_barrier(cmd, store.depth, use::nothing, use::sampled); });
   }
   const uint64_t draws = uint64_t{views_at_once} * scene.batch_instance_count;
   if (shadow_draws.capacity < draws || !shadow_draws.draws.handle) shadow_draws = make_draw_lists(device, scene, draws);
@@ -154,7 +161,8 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
     constexpr VkBufferUsageFlags usage =
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     counters = gpu::make_buffer(device, counter_bytes, usage, gpu::Memory::device);
-    counters_readback = gpu::make_buffer(device, counter_bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
+    counters_readback =
+        gpu::make_buffer(device, counter_bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
   }
 }
 
@@ -227,7 +235,7 @@ void Renderer::Impl::record(VkCommandBuffer cmd, const RenderSettings& settings,
                       VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
   const VkBufferCopy counts{.size = counters.size_bytes};
   vkCmdCopyBuffer(cmd, counters.handle, counters_readback.handle, 1, &counts);
-  const VkBufferCopy exposure{.size = sizeof(frame::LogLuminance)};
+  const VkBufferCopy exposure{.size = sizeof(frame::LuminanceSum)};
   vkCmdCopyBuffer(cmd, luminance_sums.handle, exposure_readback.handle, 1, &exposure);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
@@ -236,7 +244,7 @@ void Renderer::Impl::record(VkCommandBuffer cmd, const RenderSettings& settings,
 FrameStats Renderer::Impl::read_stats(const RenderSettings& settings, const FramePlan& plan) {
   FrameStats stats;
   for (const auto& stage : timers.read()) stats.stages.push_back({stage.name, stage.gpu_ms, stage.cpu_ms});
-  frame::LogLuminance exposure;
+  frame::LuminanceSum exposure;
   std::memcpy(&exposure, exposure_readback.mapped, sizeof exposure);
   stats.exposure_ev = exposure.exposure_ev;
   stats.lights = scene.lights.size();
@@ -308,6 +316,8 @@ Picture Renderer::read_back() {
   return picture;
 }
 
-VkImage Renderer::shown_image() const { return impl_->targets.shown.handle; }
+VkImage Renderer::shown_image() const {
+  return impl_->targets.shown.handle;
+}
 
 }  // namespace chandelier

@@ -21,7 +21,7 @@ struct RenderSettings {
   uint32_t width = 1280;
   uint32_t height = 720;
   float ambient = 0.0f;              // radiance from everywhere, for scenes that would be black without
-  std::optional<float> exposure_ev;  // stops; absent: from the picture's mean log luminance
+  std::optional<float> exposure_ev;  // stops; absent: from the picture's own brightness
 };
 
 struct StageTime {
@@ -42,7 +42,7 @@ struct FrameStats {
   uint64_t shadow_views = 0;
   uint64_t shadow_triangles = 0;
   uint64_t shadow_draws = 0;
-  uint64_t shadow_bytes = 0;      // depth that all shadow maps of the frame need together
+  uint64_t shadow_bytes = 0;       // depth that all shadow maps of the frame need together
   uint64_t shadow_pool_bytes = 0;  // depth held at a time
   uint64_t shadow_rounds = 0;      // how often the pool was filled
   uint64_t visibility_bytes = 0;

@@ -3,7 +3,8 @@
 
 namespace chandelier {
 
-std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& views, uint32_t cubes, uint64_t max_views) {
+std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& views, uint32_t cubes,
+                               uint64_t max_views) {
   std::vector<Round> rounds;
   for (uint32_t m = 0; m < list.maps.size(); ++m) {
     frame::ShadowMap& map = list.maps[m];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where there are more shadow maps than the pool holds, a frame draws and shades them in rounds: memory stays within its
-// budget and no light loses its shadow.
+// Where there are more shadow maps than the pool holds, a frame draws and shades them in rounds: memory stays within
+// its budget and no light loses its shadow.
 #pragma once
 
 #include <vector>
@@ -20,6 +20,7 @@ struct Round {
 
 /// Splits the maps into rounds of at most `cubes` maps and `max_views` views (a single map may exceed the latter), and
 /// gives every map its cube and every view its layer.
-std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& views, uint32_t cubes, uint64_t max_views);
+std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& views, uint32_t cubes,
+                               uint64_t max_views);
 
 }  // namespace chandelier

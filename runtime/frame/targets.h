@@ -19,7 +19,8 @@ Targets make_targets(const gpu::Device& device, uint32_t width, uint32_t height)
 
 /// How images are used in a frame, for barriers.
 namespace use {
-inline constexpr gpu::ImageUse nothing{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE};
+inline constexpr gpu::ImageUse nothing{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       VK_ACCESS_2_NONE};
 inline constexpr gpu::ImageUse color_attachment{VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                                 VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};

@@ -20,7 +20,7 @@ struct Error : std::runtime_error {
 void check(VkResult result, const char* what);
 
 struct DeviceOptions {
-  std::string device;       // part of a device's name (any case) or its number in list_devices(); empty: a GPU, else a CPU
+  std::string device;  // part of a device's name (any case) or its number in list_devices(); empty: a GPU, else a CPU
   bool validation = false;  // Khronos' layer with synchronization validation; Error where it is not installed
   std::vector<const char*> instance_extensions;  // what a window system needs
   bool swapchain = false;
@@ -28,8 +28,8 @@ struct DeviceOptions {
 
 struct DeviceName {
   std::string name;
-  std::string driver;      // "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)"
-  std::string unfit;       // why it cannot be used; empty where it can
+  std::string driver;  // "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)"
+  std::string unfit;   // why it cannot be used; empty where it can
 };
 /// Every Vulkan device of this machine. Throws Error where there is no Vulkan loader.
 std::vector<DeviceName> list_devices();

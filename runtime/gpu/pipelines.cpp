@@ -83,7 +83,8 @@ Pipeline make_compute_pipeline(const Device& device, const LayoutInfo& layout, s
                                                    .pSpecializationInfo = &specialization.info},
                                          .layout = pipeline.layout};
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateComputePipelines");
+  check(vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
+        "vkCreateComputePipelines");
   pipeline.handle = {device.handle, handle, vkDestroyPipeline};
   return pipeline;
 }
@@ -142,9 +143,11 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
   const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
                                                   .attachmentCount = static_cast<uint32_t>(blends.size()),
                                                   .pAttachments = blends.data()};
-  constexpr VkDynamicState dynamic_states[]{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_CULL_MODE};
-  const VkPipelineDynamicStateCreateInfo dynamic{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, .dynamicStateCount = 3, .pDynamicStates = dynamic_states};
+  constexpr VkDynamicState dynamic_states[]{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
+                                            VK_DYNAMIC_STATE_CULL_MODE};
+  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                                                 .dynamicStateCount = 3,
+                                                 .pDynamicStates = dynamic_states};
   const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
                                                 .colorAttachmentCount = static_cast<uint32_t>(in.colors.size()),
                                                 .pColorAttachmentFormats = in.colors.data(),
@@ -163,7 +166,8 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
                                           .pDynamicState = &dynamic,
                                           .layout = pipeline.layout};
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateGraphicsPipelines");
+  check(vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
+        "vkCreateGraphicsPipelines");
   pipeline.handle = {device.handle, handle, vkDestroyPipeline};
   return pipeline;
 }

@@ -16,16 +16,19 @@ uint32_t find_memory(const Device& device, uint32_t allowed, VkMemoryPropertyFla
 
 VkMemoryPropertyFlags properties_of(Memory where) {
   switch (where) {
-    case Memory::device: return VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-    case Memory::upload: return VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    case Memory::device:
+      return VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    case Memory::upload:
+      return VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     case Memory::readback:
-      return VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+      return VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT |
+             VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
   }
   return 0;
 }
 
-Owned<VkDeviceMemory> allocate(const Device& device, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties,
-                               const char* what) {
+Owned<VkDeviceMemory> allocate(const Device& device, const VkMemoryRequirements& needs,
+                               VkMemoryPropertyFlags properties, const char* what) {
   const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
                                   .allocationSize = needs.size,
                                   .memoryTypeIndex = find_memory(device, needs.memoryTypeBits, properties, what)};
@@ -35,14 +38,17 @@ Owned<VkDeviceMemory> allocate(const Device& device, const VkMemoryRequirements&
   return {device.handle, memory, vkFreeMemory};
 }
 
-bool has_depth(VkFormat format) { return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM; }
+bool has_depth(VkFormat format) {
+  return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
+}
 
 }  // namespace
 
 Buffer make_buffer(const Device& device, VkDeviceSize size_bytes, VkBufferUsageFlags usage, Memory where) {
   Buffer buffer;
   buffer.size_bytes = std::max<VkDeviceSize>(size_bytes, 64);
-  const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = buffer.size_bytes, .usage = usage};
+  const VkBufferCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = buffer.size_bytes, .usage = usage};
   VkBuffer handle = VK_NULL_HANDLE;
   check(vkCreateBuffer(device.handle, &info, nullptr, &handle), "vkCreateBuffer");
   buffer.handle = {device.handle, handle, vkDestroyBuffer};
@@ -119,10 +125,10 @@ void run_once(const Device& device, const std::function<void(VkCommandBuffer)>& 
   check(vkBeginCommandBuffer(cmd, &begin), "vkBeginCommandBuffer");
   record(cmd);
   check(vkEndCommandBuffer(cmd), "vkEndCommandBuffer");
-  const VkCommandBufferSubmitInfo submitted{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, .commandBuffer = cmd};
-  const VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
-                             .commandBufferInfoCount = 1,
-                             .pCommandBufferInfos = &submitted};
+  const VkCommandBufferSubmitInfo submitted{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                            .commandBuffer = cmd};
+  const VkSubmitInfo2 submit{
+      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &submitted};
   check(vkQueueSubmit2(device.queue, 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit2");
   check(vkQueueWaitIdle(device.queue), "vkQueueWaitIdle");
 }

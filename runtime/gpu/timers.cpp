@@ -41,12 +41,15 @@ void Timers::begin(VkCommandBuffer cmd, const char* stage) {
 
 void Timers::end(VkCommandBuffer cmd) {
   const Span& span = spans_.back();
-  stages_[span.stage].cpu_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun_).count();
+  stages_[span.stage].cpu_ms +=
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun_).count();
   if (span.first_query != UINT32_MAX)
     vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, span.first_query + 1);
 }
 
-void Timers::add_cpu(const char* stage, double cpu_ms) { stages_[stage_number(stage)].cpu_ms += cpu_ms; }
+void Timers::add_cpu(const char* stage, double cpu_ms) {
+  stages_[stage_number(stage)].cpu_ms += cpu_ms;
+}
 
 std::vector<Timers::Stage> Timers::read() {
   std::vector<uint64_t> ticks(used_);

@@ -18,7 +18,8 @@ struct Center {
 std::vector<uint32_t> by_descending_range(std::span<const ClusterLight> lights) {
   std::vector<uint32_t> order(lights.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return lights[a].range_m > lights[b].range_m; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return lights[a].range_m > lights[b].range_m; });
   return order;
 }
 
@@ -41,9 +42,12 @@ std::vector<Center> select_centers(std::span<const ClusterLight> lights, std::sp
 float scaled_d_min(const ClusterSettings& settings, const glm::vec3& center_ws) {
   const float depth = glm::distance(settings.camera_ws, center_ws) / settings.z_far_m;
   switch (settings.scaling) {
-    case DistanceScaling::grow: return settings.d_init_m * (1.0f + depth);
-    case DistanceScaling::paper_formula: return settings.d_init_m * std::max(0.0f, 1.0f - depth);
-    case DistanceScaling::none: break;
+    case DistanceScaling::grow:
+      return settings.d_init_m * (1.0f + depth);
+    case DistanceScaling::paper_formula:
+      return settings.d_init_m * std::max(0.0f, 1.0f - depth);
+    case DistanceScaling::none:
+      break;
   }
   return settings.d_init_m;
 }

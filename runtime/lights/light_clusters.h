@@ -30,9 +30,9 @@ struct ClusterSettings {
 };
 
 struct LightCluster {
-  uint32_t center;      // index of the light whose position the shadow map is drawn from
-  float d_min_m;        // radius of the area light that stands for the cluster
-  float range_m;        // C_att = max over members of d_C + range: beyond it no member reaches
+  uint32_t center;       // index of the light whose position the shadow map is drawn from
+  float d_min_m;         // radius of the area light that stands for the cluster
+  float range_m;         // C_att = max over members of d_C + range: beyond it no member reaches
   uint32_t light_count;  // members, the centre included
 };
 

@@ -10,7 +10,9 @@
 namespace chandelier {
 namespace {
 
-bool is_directional(const pack::Light& light) { return light.type == pack::LightType::directional; }
+bool is_directional(const pack::Light& light) {
+  return light.type == pack::LightType::directional;
+}
 
 // LightCluster §3.1.2: bounding spheres against the view frustum.
 std::vector<uint32_t> lights_in_view(std::span<const pack::Light> lights, const Camera& camera, float aspect) {
@@ -78,8 +80,8 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
 
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect) {
   const auto in_view = lights_in_view(lights, camera, aspect);
-  std::vector<Member> members =
-      recipe.select == Select::light_clusters ? cluster(lights, in_view, recipe, camera) : one_map_each(lights, in_view);
+  std::vector<Member> members = recipe.select == Select::light_clusters ? cluster(lights, in_view, recipe, camera)
+                                                                        : one_map_each(lights, in_view);
   std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
     return a.center != b.center ? a.center < b.center : a.light < b.light;
   });

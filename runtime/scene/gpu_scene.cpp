@@ -35,7 +35,8 @@ void upload_runs(const gpu::Device& device, const pack::View& pack, GpuScene& sc
   const auto masked = [&](const MaterialRun& run) {
     return pack.materials[run.material].alpha_mode == pack::AlphaMode::mask;
   };
-  scene.opaque_runs = static_cast<uint32_t>(std::find_if(scene.runs.begin(), scene.runs.end(), masked) - scene.runs.begin());
+  scene.opaque_runs =
+      static_cast<uint32_t>(std::find_if(scene.runs.begin(), scene.runs.end(), masked) - scene.runs.begin());
   std::vector<uint32_t> first_of_run;
   std::vector<uint32_t> run_of_batch_instance;
   for (const MaterialRun& run : scene.runs) {

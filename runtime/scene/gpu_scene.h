@@ -30,14 +30,14 @@ struct GpuScene {
   gpu::Buffer instances;
   gpu::Buffer batch_instances;
   gpu::Buffer materials;
-  gpu::Buffer material_runs;           // pack order: first batch instance of each run
-  gpu::Buffer run_of_batch_instance;   // one u32 each
+  gpu::Buffer material_runs;          // pack order: first batch instance of each run
+  gpu::Buffer run_of_batch_instance;  // one u32 each
   uint32_t batch_instance_count = 0;
 
   std::vector<MaterialRun> runs;
-  uint32_t opaque_runs = 0;            // the runs before the first masked one
-  std::vector<bool> double_sided;      // per material
-  std::vector<gpu::Image> images;      // the pack's, then one white texel
+  uint32_t opaque_runs = 0;        // the runs before the first masked one
+  std::vector<bool> double_sided;  // per material
+  std::vector<gpu::Image> images;  // the pack's, then one white texel
   std::vector<gpu::Owned<VkSampler>> samplers;
   gpu::Owned<VkDescriptorSetLayout> material_layout;  // set 1: the five textures of a material
   gpu::Owned<VkDescriptorPool> material_pool;

@@ -15,8 +15,7 @@ constexpr gpu::ImageUse read_by_fragments{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIM
                                           VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
 
 VkFormat format_of(const pack::Image& image) {
-  return image.format == pack::ImageFormat::rgba8_srgb ? VK_FORMAT_R8G8B8A8_SRGB
-                                                                              : VK_FORMAT_R8G8B8A8_UNORM;
+  return image.format == pack::ImageFormat::rgba8_srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
 }
 
 gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std::span<const std::byte> texels) {
@@ -51,9 +50,12 @@ gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std:
 
 VkSamplerAddressMode address_mode(pack::Wrap wrap) {
   switch (wrap) {
-    case pack::Wrap::clamp_to_edge: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    case pack::Wrap::mirrored_repeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-    default: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    case pack::Wrap::clamp_to_edge:
+      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    case pack::Wrap::mirrored_repeat:
+      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    default:
+      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
   }
 }
 
@@ -96,7 +98,8 @@ void make_material_layout(const gpu::Device& device, uint32_t materials, GpuScen
   gpu::check(vkCreateDescriptorSetLayout(device.handle, &layout_info, nullptr, &layout), "vkCreateDescriptorSetLayout");
   scene.material_layout = {device.handle, layout, vkDestroyDescriptorSetLayout};
 
-  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, std::max(1u, materials) * textures_per_material};
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                  std::max(1u, materials) * textures_per_material};
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
                                              .maxSets = std::max(1u, materials),
                                              .poolSizeCount = 1,
@@ -145,8 +148,7 @@ void upload_textures(const gpu::Device& device, const pack::View& pack, GpuScene
     scene.images.push_back(upload_image(device, image, pack.image_data.subspan(image.first_byte, image.size_bytes)));
   const std::array<std::byte, 4> white{std::byte{255}, std::byte{255}, std::byte{255}, std::byte{255}};
   scene.images.push_back(upload_image(
-      device, {.width = 1, .height = 1, .level_count = 1, .format = pack::ImageFormat::rgba8_unorm},
-      white));
+      device, {.width = 1, .height = 1, .level_count = 1, .format = pack::ImageFormat::rgba8_unorm}, white));
   scene.samplers = make_samplers(device);
   make_material_layout(device, static_cast<uint32_t>(pack.materials.size()), scene);
   for (const pack::Material& material : pack.materials)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums log luminance: pass 0 a sum per 16 x 16 pixels, pass 1 all sums into the picture's exposure. Sums are taken in a
-// fixed order, so that the same picture gets the same exposure.
+// Sums square roots of luminance: pass 0 a sum per 16 x 16 pixels, pass 1 all sums into the picture's exposure. The mean
+// of roots lies between the log mean, which dark corners of a night scene drag up, and the plain mean, which lamps in view
+// drag down. Sums are taken in a fixed order, so that the same picture gets the same exposure.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
@@ -8,7 +9,7 @@
 layout(constant_id = 0) const uint pass = 0u;
 layout(local_size_x = 256) in;
 layout(binding = 0, rgba32f) uniform readonly image2D radiance_image;
-layout(binding = 1, scalar) buffer Sums { LogLuminance sums[]; };
+layout(binding = 1, scalar) buffer Sums { LuminanceSum sums[]; };
 layout(push_constant, scalar) uniform Push { ToneConstants tone; };
 
 const float MIDDLE_GREY = 0.18;
@@ -22,7 +23,7 @@ vec2 of_pixel(uint group, uint thread) {
   ivec2 pixel = ivec2(group % columns, group / columns) * 16 + ivec2(thread % 16u, thread / 16u);
   if (any(greaterThanEqual(pixel, size))) return vec2(0.0);
   float luminance = dot(imageLoad(radiance_image, pixel).rgb, vec3(0.2126, 0.7152, 0.0722));
-  return luminance > DARKEST && luminance < 1e30 ? vec2(log2(luminance), 1.0) : vec2(0.0);
+  return luminance > DARKEST && luminance < 1e30 ? vec2(sqrt(luminance), 1.0) : vec2(0.0);
 }
 
 void main() {
@@ -42,7 +43,7 @@ void main() {
     sums[gl_WorkGroupID.x].sum = partial[0].x;
     sums[gl_WorkGroupID.x].pixels = partial[0].y;
   } else {
-    float automatic = partial[0].y > 0.0 ? log2(MIDDLE_GREY) - partial[0].x / partial[0].y : 0.0;
+    float automatic = partial[0].x > 0.0 ? log2(MIDDLE_GREY) - 2.0 * log2(partial[0].x / partial[0].y) : 0.0;
     sums[0].exposure_ev = tone.automatic != 0u ? automatic : tone.exposure_ev;
   }
 }

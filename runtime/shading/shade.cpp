@@ -46,8 +46,8 @@ ShadePipelines make_shade_pipelines(const gpu::Device& device) {
 
 void record_shade(VkCommandBuffer cmd, const ShadePipelines& pipelines, const Recipe& recipe, const ShadeInput& input,
                   const CubeArray& store, const Targets& targets) {
-  const auto& pipeline =
-      pipelines.by_filter_and_shade[static_cast<uint32_t>(recipe.filter) * shade_answers + static_cast<uint32_t>(recipe.shade)];
+  const auto& pipeline = pipelines.by_filter_and_shade[static_cast<uint32_t>(recipe.filter) * shade_answers +
+                                                       static_cast<uint32_t>(recipe.shade)];
   const VkSampler compare = recipe.filter == Filter::hard ? pipelines.nearest_compare : pipelines.linear_compare;
   gpu::image_barrier(cmd, targets.radiance, use::storage, use::storage);
   gpu::bind(cmd, pipeline,

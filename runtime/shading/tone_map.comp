@@ -6,7 +6,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba32f) uniform readonly image2D radiance_image;
-layout(binding = 1, scalar) readonly buffer Sums { LogLuminance sums[]; };
+layout(binding = 1, scalar) readonly buffer Sums { LuminanceSum sums[]; };
 layout(binding = 2, rgba8) uniform writeonly image2D shown_image;
 
 // Narkowicz 2015, ACES Filmic Tone Mapping Curve.

@@ -8,7 +8,9 @@
 namespace chandelier {
 namespace {
 
-uint32_t groups(uint32_t width, uint32_t height) { return (width + 15) / 16 * ((height + 15) / 16); }
+uint32_t groups(uint32_t width, uint32_t height) {
+  return (width + 15) / 16 * ((height + 15) / 16);
+}
 
 void computed_before_compute(VkCommandBuffer cmd) {
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
@@ -28,7 +30,7 @@ TonePipelines make_tone_pipelines(const gpu::Device& device) {
 }
 
 gpu::Buffer make_luminance_sums(const gpu::Device& device, uint32_t width, uint32_t height) {
-  return gpu::make_buffer(device, groups(width, height) * sizeof(frame::LogLuminance),
+  return gpu::make_buffer(device, groups(width, height) * sizeof(frame::LuminanceSum),
                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::device);
 }
 

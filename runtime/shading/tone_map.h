@@ -16,7 +16,7 @@ struct TonePipelines {
 };
 TonePipelines make_tone_pipelines(const gpu::Device& device);
 
-/// frame LogLuminance records: one per 16 x 16 pixels.
+/// frame LuminanceSum records: one per 16 x 16 pixels.
 gpu::Buffer make_luminance_sums(const gpu::Device& device, uint32_t width, uint32_t height);
 
 /// Leaves the exposure used in the first record of `sums`, and `shown` ready to be copied from.

@@ -19,7 +19,8 @@ DrawLists make_draw_lists(const gpu::Device& device, const GpuScene& scene, uint
   static_assert(sizeof(frame::CasterDraw) == frame::caster_draw_stride);
   const uint64_t bytes = draws * sizeof(frame::CasterDraw);
   if (bytes > device.limits.maxStorageBufferRange)
-    throw gpu::Error("the scene has too many batches for this device (" + std::to_string(scene.batch_instance_count) + ")");
+    throw gpu::Error("the scene has too many batches for this device (" + std::to_string(scene.batch_instance_count) +
+                     ")");
   constexpr VkBufferUsageFlags usage =
       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   return {gpu::make_buffer(device, bytes, usage, gpu::Memory::device),
@@ -35,7 +36,8 @@ std::vector<DrawList> lists_by_material(const GpuScene& scene) {
 
 std::vector<DrawList> lists_for_shadows(const GpuScene& scene) {
   const auto all = lists_by_material(scene);
-  const uint32_t opaque = scene.opaque_runs < scene.runs.size() ? scene.runs[scene.opaque_runs].first : scene.batch_instance_count;
+  const uint32_t opaque =
+      scene.opaque_runs < scene.runs.size() ? scene.runs[scene.opaque_runs].first : scene.batch_instance_count;
   std::vector<DrawList> lists{{0, 0, opaque, pack::none}};
   // Without an opaque run list 0 is the first masked one's number: number the masked ones as cull.glsl does.
   for (uint32_t run = scene.opaque_runs; run < all.size(); ++run) {
@@ -47,8 +49,9 @@ std::vector<DrawList> lists_for_shadows(const GpuScene& scene) {
 
 void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,
                  const CullInput& input, const DrawLists& lists) {
-  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, VK_ACCESS_2_NONE,
-                      VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE);
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
+                      VK_ACCESS_2_NONE, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                      VK_ACCESS_2_NONE);
   vkCmdFillBuffer(cmd, lists.counts.handle, 0, VK_WHOLE_SIZE, 0);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                       VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
@@ -72,10 +75,9 @@ void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipe
 
 void draw_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list, uint32_t view_count) {
   if (list.batch_instances == 0) return;
-  vkCmdDrawIndexedIndirectCount(cmd, lists.draws.handle,
-                                VkDeviceSize{list.first_batch_instance} * view_count * sizeof(frame::CasterDraw),
-                                lists.counts.handle, list.number * 4, list.batch_instances * view_count,
-                                frame::caster_draw_stride);
+  vkCmdDrawIndexedIndirectCount(
+      cmd, lists.draws.handle, VkDeviceSize{list.first_batch_instance} * view_count * sizeof(frame::CasterDraw),
+      lists.counts.handle, list.number * 4, list.batch_instances * view_count, frame::caster_draw_stride);
 }
 
 }  // namespace chandelier

@@ -18,13 +18,14 @@ std::array<glm::vec4, 4> columns(const glm::vec4& x, const glm::vec4& y, const g
 frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t map_number, uint32_t face, float texel_m) {
   const CubeFace axes = cube_face(face);
   const auto row = [&](const glm::vec3& axis) { return glm::vec4(axis, -glm::dot(axis, map.center_ws)); };
-  return {.clip_from_world = columns(row(axes.s), row(axes.t), glm::vec4(0, 0, 0, frame::shadow_near_m), row(axes.major)),
-          .center_ws = map.center_ws,
-          .range_m = map.range_m,
-          .layer = face,
-          .shadow_map = map_number,
-          .texel_m = texel_m,
-          .far_m = 0.0f};
+  return {
+      .clip_from_world = columns(row(axes.s), row(axes.t), glm::vec4(0, 0, 0, frame::shadow_near_m), row(axes.major)),
+      .center_ws = map.center_ws,
+      .range_m = map.range_m,
+      .layer = face,
+      .shadow_map = map_number,
+      .texel_m = texel_m,
+      .far_m = 0.0f};
 }
 
 // Does the cone reach the square pyramid of a face? The face lies within acos(1/sqrt(3)) of its axis.
@@ -37,8 +38,8 @@ bool cone_touches(const CubeFace& face, const frame::FrameLight& light) {
 void project_cube(const LightList& list, uint32_t map_number, float texel_m, std::vector<frame::ShadowView>& views) {
   const uint32_t first = list.first_light[map_number];
   const frame::FrameLight& light = list.lights[first];
-  const bool lone_spot = list.first_light[map_number + 1] == first + 1 &&
-                         light.type == static_cast<uint32_t>(pack::LightType::spot);
+  const bool lone_spot =
+      list.first_light[map_number + 1] == first + 1 && light.type == static_cast<uint32_t>(pack::LightType::spot);
   for (uint32_t face = 0; face < 6; ++face)
     if (!lone_spot || cone_touches(cube_face(face), light))
       views.push_back(cube_view(list.maps[map_number], map_number, face, texel_m));
@@ -54,7 +55,8 @@ std::array<glm::vec3, 8> corners(const Bounds& b) {
 // Splits between logarithmic and even (Zhang et al. 2006, parallel-split shadow maps), metres along the view.
 std::array<float, frame::cascade_count + 1> split_depths(const Camera& camera, const Bounds& bounds) {
   float far_m = camera.znear_m * 2.0f;
-  for (const glm::vec3& corner : corners(bounds)) far_m = std::max(far_m, glm::dot(corner - camera.eye_ws, camera.forward_ws));
+  for (const glm::vec3& corner : corners(bounds))
+    far_m = std::max(far_m, glm::dot(corner - camera.eye_ws, camera.forward_ws));
   const float near_m = std::max(camera.znear_m, far_m * 0.002f);
   std::array<float, frame::cascade_count + 1> splits{};
   for (uint32_t i = 0; i <= frame::cascade_count; ++i) {
@@ -79,11 +81,13 @@ Sphere slice_sphere(const Camera& camera, float aspect, float near_m, float far_
   return {camera.eye_ws + glm::normalize(camera.forward_ws) * middle, radius};
 }
 
-frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction, const Bounds& bounds, uint32_t map_number,
-                               uint32_t cascade, float far_m, uint32_t face_size_px) {
+frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction, const Bounds& bounds,
+                               uint32_t map_number, uint32_t cascade, float far_m, uint32_t face_size_px) {
   const CameraAxes axes = axes_of({.forward_ws = direction});
   const float texel_m = 2.0f * sphere.radius_m / static_cast<float>(face_size_px);
-  const auto snapped = [&](const glm::vec3& axis) { return std::floor(glm::dot(axis, sphere.center_ws) / texel_m) * texel_m; };
+  const auto snapped = [&](const glm::vec3& axis) {
+    return std::floor(glm::dot(axis, sphere.center_ws) / texel_m) * texel_m;
+  };
   float nearest = INFINITY;  // along the light's way, over the whole scene: casters may stand outside the view
   float farthest = -INFINITY;
   for (const glm::vec3& corner : corners(bounds)) {
@@ -95,24 +99,25 @@ frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction,
   farthest += margin;
   const float scale = 1.0f / sphere.radius_m;
   const float depth_scale = 1.0f / (farthest - nearest);
-  return {.clip_from_world = columns(glm::vec4(axes.right * scale, -snapped(axes.right) * scale),
-                                     glm::vec4(-axes.up * scale, snapped(axes.up) * scale),
-                                     glm::vec4(-axes.forward * depth_scale, farthest * depth_scale), glm::vec4(0, 0, 0, 1)),
-          .center_ws = glm::vec3(0.0f),
-          .range_m = 0.0f,
-          .layer = cascade,
-          .shadow_map = map_number,
-          .texel_m = texel_m,
-          .far_m = far_m};
+  return {
+      .clip_from_world = columns(glm::vec4(axes.right * scale, -snapped(axes.right) * scale),
+                                 glm::vec4(-axes.up * scale, snapped(axes.up) * scale),
+                                 glm::vec4(-axes.forward * depth_scale, farthest * depth_scale), glm::vec4(0, 0, 0, 1)),
+      .center_ws = glm::vec3(0.0f),
+      .range_m = 0.0f,
+      .layer = cascade,
+      .shadow_map = map_number,
+      .texel_m = texel_m,
+      .far_m = far_m};
 }
 
-void project_cascades(const LightList& list, uint32_t map_number, const Camera& camera, float aspect, const Bounds& bounds,
-                      uint32_t face_size_px, std::vector<frame::ShadowView>& views) {
+void project_cascades(const LightList& list, uint32_t map_number, const Camera& camera, float aspect,
+                      const Bounds& bounds, uint32_t face_size_px, std::vector<frame::ShadowView>& views) {
   const glm::vec3 direction = list.lights[list.first_light[map_number]].direction_ws;
   const auto splits = split_depths(camera, bounds);
   for (uint32_t i = 0; i < frame::cascade_count; ++i)
-    views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), direction, bounds, map_number, i,
-                                 splits[i + 1], face_size_px));
+    views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), direction, bounds, map_number,
+                                 i, splits[i + 1], face_size_px));
 }
 
 }  // namespace
@@ -120,12 +125,18 @@ void project_cascades(const LightList& list, uint32_t map_number, const Camera& 
 CubeFace cube_face(uint32_t face) {
   const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   switch (face) {
-    case 0: return {-z, -y, x};
-    case 1: return {z, -y, -x};
-    case 2: return {x, z, y};
-    case 3: return {x, -z, -y};
-    case 4: return {x, -y, z};
-    default: return {-x, -y, -z};
+    case 0:
+      return {-z, -y, x};
+    case 1:
+      return {z, -y, -x};
+    case 2:
+      return {x, z, y};
+    case 3:
+      return {x, -z, -y};
+    case 4:
+      return {x, -y, z};
+    default:
+      return {-x, -y, -z};
   }
 }
 

@@ -31,20 +31,22 @@ void begin_pass(VkCommandBuffer cmd, const CubeArray& store, uint32_t cubes) {
 CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene& scene) {
   std::vector<gpu::VertexStream> with_uv = position_and_attribute_streams();
   std::erase_if(with_uv[1].attributes, [](const auto& attribute) { return attribute.location < 3; });
-  return {gpu::make_graphics_pipeline(device, {.layout = {.bindings = std::vector<VkDescriptorType>(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER)},
-                                               .vertex = caster_vert,
-                                               .streams = position_stream(),
-                                               .depth = VK_FORMAT_D32_SFLOAT}),
-          gpu::make_graphics_pipeline(device, {.layout = {.bindings = std::vector<VkDescriptorType>(4, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                                          .more_sets = {scene.material_layout}},
+  const gpu::LayoutInfo opaque{std::vector<VkDescriptorType>(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {}};
+  const gpu::LayoutInfo masked{
+      std::vector<VkDescriptorType>(4, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {scene.material_layout}};
+  return {gpu::make_graphics_pipeline(
+              device,
+              {.layout = opaque, .vertex = caster_vert, .streams = position_stream(), .depth = VK_FORMAT_D32_SFLOAT}),
+          gpu::make_graphics_pipeline(device, {.layout = masked,
                                                .vertex = caster_masked_vert,
                                                .fragment = caster_masked_frag,
                                                .streams = with_uv,
                                                .depth = VK_FORMAT_D32_SFLOAT})};
 }
 
-void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const GpuScene& scene, const DrawLists& lists,
-                    const gpu::Buffer& views, uint32_t view_count, const CubeArray& store, uint32_t cubes) {
+void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const GpuScene& scene,
+                    const DrawLists& lists, const gpu::Buffer& views, uint32_t view_count, const CubeArray& store,
+                    uint32_t cubes) {
   gpu::image_barrier(cmd, store.depth, use::nothing, use::depth_attachment);
   begin_pass(cmd, store, cubes);
   const VkBuffer streams[]{scene.positions.handle, scene.vertex_attributes.handle};
@@ -56,8 +58,9 @@ void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const
   gpu::bind(cmd, pipelines.opaque, {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances)});
   draw_list(cmd, lists, draw_lists[0], view_count);
   if (draw_lists.size() > 1)
-    gpu::bind(cmd, pipelines.masked, {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances),
-                                      gpu::storage(scene.materials)});
+    gpu::bind(
+        cmd, pipelines.masked,
+        {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances), gpu::storage(scene.materials)});
   for (size_t i = 1; i < draw_lists.size(); ++i) {
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.masked.layout, 1, 1,
                             &scene.material_sets[draw_lists[i].material], 0, nullptr);

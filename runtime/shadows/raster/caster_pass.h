@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rasterize answer `multi-draw`: the casters of all views of a round in one pass, one multi-draw-indirect for everything
-// opaque and one per alpha-tested material.
+// Rasterize answer `multi-draw`: the casters of all views of a round in one pass, one multi-draw-indirect for
+// everything opaque and one per alpha-tested material.
 #pragma once
 
 #include "shadows/cull/cull.h"
@@ -15,7 +15,8 @@ struct CasterPipelines {
 CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene& scene);
 
 /// Clears the first `cubes` cubes of the store and draws into them; leaves the store ready to be sampled.
-void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const GpuScene& scene, const DrawLists& lists,
-                    const gpu::Buffer& views, uint32_t view_count, const CubeArray& store, uint32_t cubes);
+void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const GpuScene& scene,
+                    const DrawLists& lists, const gpu::Buffer& views, uint32_t view_count, const CubeArray& store,
+                    uint32_t cubes);
 
 }  // namespace chandelier

@@ -16,13 +16,14 @@ CubeArray make_cube_array(const gpu::Device& device, uint32_t face_size_px, uint
     throw gpu::Error("shadow faces of " + std::to_string(face_size_px) + " texels are too large for this device (" +
                      std::to_string(device.limits.maxImageDimensionCube) + ")");
   CubeArray store;
-  store.depth = gpu::make_image(device, {.format = VK_FORMAT_D32_SFLOAT,
-                                         .width = face_size_px,
-                                         .height = face_size_px,
-                                         .layers = 6 * cube_count,
-                                         .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                         .flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT,
-                                         .view_type = VK_IMAGE_VIEW_TYPE_2D_ARRAY});
+  store.depth =
+      gpu::make_image(device, {.format = VK_FORMAT_D32_SFLOAT,
+                               .width = face_size_px,
+                               .height = face_size_px,
+                               .layers = 6 * cube_count,
+                               .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                               .flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT,
+                               .view_type = VK_IMAGE_VIEW_TYPE_2D_ARRAY});
   store.cubes = gpu::make_view(device, store.depth, VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, 0, 6 * cube_count);
   store.face_size_px = face_size_px;
   store.cube_count = cube_count;

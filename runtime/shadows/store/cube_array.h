@@ -8,14 +8,16 @@
 namespace chandelier {
 
 struct CubeArray {
-  gpu::Image depth;                    // its own view is a 2D array: cascades are read through it, and it is drawn to
-  gpu::Owned<VkImageView> cubes;       // the same layers as a cube array
+  gpu::Image depth;               // its own view is a 2D array: cascades are read through it, and it is drawn to
+  gpu::Owned<VkImageView> cubes;  // the same layers as a cube array
   uint32_t face_size_px = 0;
   uint32_t cube_count = 0;
 };
 
 /// Depth of one cube.
-constexpr uint64_t cube_bytes(uint32_t face_size_px) { return uint64_t{6} * 4 * face_size_px * face_size_px; }
+constexpr uint64_t cube_bytes(uint32_t face_size_px) {
+  return uint64_t{6} * 4 * face_size_px * face_size_px;
+}
 
 /// How many cubes the pool may have: at least one.
 uint32_t cubes_within(const gpu::Device& device, uint32_t face_size_px, uint64_t budget_bytes);
