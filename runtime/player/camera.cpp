@@ -87,11 +87,12 @@ NamedCamera choose_camera(const pack::File& pack, const std::string& name, float
     if (name.empty() || names.back() == name) return {std::string(names.back()), named(camera)};
   }
   if (name.empty()) {
-    const pack::BakeInfo& info = pack.view().bake_info[0];
+    const pack::BakeInfo& info = *pack.view().bake_info;
     return {"", camera_framing(info.bounds_min_ws, info.bounds_max_ws, aspect)};
   }
   if (names.empty()) throw std::runtime_error(fmt::format("--camera: the pack has no cameras ({})", name));
-  throw std::runtime_error(fmt::format("--camera: the pack has {}, but no ({})", fmt::join(names, ", "), name));
+  throw std::runtime_error(
+      fmt::format("--camera: the pack has {}, none of that name ({})", fmt::join(names, ", "), name));
 }
 
 void turn(Camera& camera, float yaw_rad, float pitch_rad) {

@@ -83,6 +83,7 @@ void write_exr([[maybe_unused]] const fs::path& path, [[maybe_unused]] const Pic
   OIIO::Filesystem::IOVecOutput memory(bytes);
   OIIO::ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height), 3, OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");  // else the time of writing: the same picture is to be the same bytes
   const auto output = OIIO::ImageOutput::create("memory.exr", &memory);
   if (!output || !output->open("memory.exr", spec) || !output->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) ||
       !output->close())

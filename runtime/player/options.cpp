@@ -90,9 +90,7 @@ void declare_output(CLI::App& app, Typed& typed) {
       ->type_name("WxH")
       ->capture_default_str()
       ->group("Output");
-  app.add_option("--frames", typed.frames,
-                 "Timed frames to draw after warming up; medians are reported; a window closes after so many [1; 5 "
-                 "with --compare; a window stays]")
+  app.add_option("--frames", typed.frames, "Timed frames to draw [1, with --compare 5; a window closes after so many]")
       ->type_name("N")
       ->check(number_between(1, 1000000))
       ->group("Output");
@@ -107,8 +105,7 @@ void declare_output(CLI::App& app, Typed& typed) {
 
 void declare_view(CLI::App& app, Typed& typed) {
   app.add_option("--camera", typed.camera,
-                 "A camera of the pack, or eye, target (metres) and vertical angle (degrees) [the pack's first camera, "
-                 "else one that sees the whole scene]")
+                 "A camera of the pack, or eye, target, vertical angle [the pack's first, else sees it all]")
       ->type_name("NAME|ex,ey,ez,tx,ty,tz,fov_deg")
       ->group("View");
   app.add_option("--ambient", typed.ambient, "Radiance from everywhere")
@@ -172,8 +169,7 @@ void declare_recipe(CLI::App& app, Typed& typed) {
       ->check(number_between(1, kLargestPicture))
       ->group(group);
   app.add_option("--shadow-budget", typed.shadow_budget,
-                 fmt::format("Shadow-map depth held at a time, MiB; more maps take further rounds [{}]",
-                             defaults.shadow_budget_bytes >> 20))
+                 fmt::format("Shadow-map depth held at a time, MiB [{}]", defaults.shadow_budget_bytes >> 20))
       ->type_name("MIB")
       ->check(number_between(1, 1 << 20))
       ->group(group);

@@ -12,7 +12,7 @@ namespace chandelier::player {
 namespace {
 
 constexpr std::string_view kStyle = R"(
-:root { color-scheme: light dark; --line: #8884; --dim: #8889; --a: #4a7fd1; --b: #d9822b; }
+:root { color-scheme: light dark; --line: #8884; --dim: #777; --a: #4a7fd1; --b: #d9822b; }
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 1320px; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; margin: 0; } h2 { font-size: 1.1rem; margin: 2.2rem 0 .6rem; }
 p.about { color: var(--dim); margin: .2rem 0 1.4rem; }
@@ -169,10 +169,11 @@ std::string times(const Comparison& c) {
   html += time_row("all stages", sum_a, sum_b, whole, " class=\"sum\"");
   html += time_row("CPU ms, all stages", cpu_a, cpu_b, whole);
   html += time_row("whole frame", c.a.stats.frame_ms, c.b.stats.frame_ms, whole, " class=\"sum\"");
-  return html + fmt::format(
-                    "</table>\n<p class=\"about\">Medians of {} frames each, drawn in turns after warming up. "
-                    "The last three rows have a scale of their own.</p>\n",
-                    c.a.frames);
+  return html +
+         fmt::format(
+             "</table>\n<p class=\"about\">Medians of {} frames each, drawn in turns after warming up. Ratios are "
+             "{} over {}. The last three rows have bars of their own scale.</p>\n",
+             c.a.frames, side_name(c, true), side_name(c, false));
 }
 
 std::string text_row(std::string_view name, const std::string& a, const std::string& b, std::string_view cell) {
