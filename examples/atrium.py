@@ -25,7 +25,7 @@ BAY = 2.5
 COLUMNS_X = [-13.75 + BAY * i for i in range(12)]
 END_X = 14.4  # inner face of the end walls
 COURT_Z, WALL_Z = 3.0, 6.0  # row of columns; inner face of the outer walls
-FLOOR_2, ROOF_Y = 4.7, 9.0
+FLOOR_2, ROOF_Y = 4.7, 8.4  # top of the gallery's joists; eaves
 GALLERY_WALL = 0.5
 
 
@@ -58,7 +58,7 @@ def column(height, radius, segments):
     base = [(0, plinth), (1.35 * r, plinth), (1.38 * r, plinth + 0.04), (1.3 * r, plinth + 0.08), (1.12 * r, plinth + 0.11),
             (1.22 * r, plinth + 0.15), (1.18 * r, plinth + 0.19), (1.0 * r, plinth + 0.22)]
     y0, y1 = plinth + 0.22, top - 0.36
-    shaft = [(r * (1 - 0.16 * t**1.6), y0 + (y1 - y0) * t) for t in np.linspace(0.1, 1, 9)]
+    shaft = [(r * (1 - 0.16 * t**1.6), y0 + (y1 - y0) * t) for t in np.linspace(0.2, 1, 5)]
     bell = [(0.98 * r, top - 0.34), (0.98 * r, top - 0.31), (0.86 * r, top - 0.28), (0.92 * r, top - 0.18),
             (1.1 * r, top - 0.09), (1.4 * r, top - 0.02), (1.42 * r, top), (0, top)]
     a = 1.5 * r
@@ -67,14 +67,14 @@ def column(height, radius, segments):
 
 def arcade(doc, mat):
     """Columns and arches of the ground floor and of the gallery, each mesh shared by all its bays and by both sides."""
-    ground_column = doc.add_mesh("Column", [(column(2.9, 0.24, 20), mat["stone"])])
+    ground_column = doc.add_mesh("Column", [(column(2.9, 0.24, 18), mat["stone"])])
     ground_arch = doc.add_mesh("Arch", [
         (arch_wall(BAY, 2.9, FLOOR_2 - 0.3, 0.95, 0.62, 20), mat["brick"]),
         (archivolt(2.9, 0.95, 0.2, 0.31, 0.36, 20), mat["stone"])])
-    gallery_column = doc.add_mesh("Gallery column", [(column(1.75, 0.15, 12).moved(y=FLOOR_2 + 0.75), mat["stone"])])
+    gallery_column = doc.add_mesh("Gallery column", [(column(1.45, 0.15, 12).moved(y=FLOOR_2 + 0.75), mat["stone"])])
     gallery_arch = doc.add_mesh("Gallery arch", [
-        (arch_wall(BAY, FLOOR_2 + 2.5, ROOF_Y - 0.4, 1.0, GALLERY_WALL, 16), mat["plaster"]),
-        (archivolt(FLOOR_2 + 2.5, 1.0, 0.16, 0.25, 0.3, 16), mat["stone"])])
+        (arch_wall(BAY, FLOOR_2 + 2.2, ROOF_Y - 0.25, 1.0, GALLERY_WALL, 16), mat["plaster"]),
+        (archivolt(FLOOR_2 + 2.2, 1.0, 0.16, 0.25, 0.3, 16), mat["stone"])])
     parapet = doc.add_mesh("Parapet", [
         (box((-BAY / 2, FLOOR_2, -0.2), (BAY / 2, FLOOR_2 + 0.65, 0.2)), mat["plaster"]),
         (box((-BAY / 2, FLOOR_2 + 0.65, -0.26), (BAY / 2, FLOOR_2 + 0.75, 0.26)), mat["stone"])])
@@ -107,14 +107,13 @@ def shell(doc, mat):
         z = s * wz
         walls.append(box((-ex, 0, min(z, z + s * 0.3)), (ex, FLOOR_2 - 0.3, max(z, z + s * 0.3)), 1.2))
         plasters.append(box((-ex, FLOOR_2, min(z, z + s * 0.3)), (ex, ROOF_Y, max(z, z + s * 0.3)), 1.4))
-        trims += [cornice(s * (COURT_Z - 0.31), FLOOR_2 - 0.3, 0.22, 0.3), cornice(s * (COURT_Z - 0.25), ROOF_Y - 0.5, 0.4, 0.4),
+        trims += [cornice(s * (COURT_Z - 0.31), FLOOR_2 - 0.3, 0.22, 0.3), cornice(s * (COURT_Z - 0.25), ROOF_Y - 0.3, 0.35, 0.3),
                   cornice(z, 0.0, 0.08, 0.35)]
         for x in COLUMNS_X:  # pilasters answer the columns
             trims.append(box((x - 0.22, 0, min(z, z - s * 0.14)), (x + 0.22, FLOOR_2 - 0.45, max(z, z - s * 0.14))))
             trims.append(box((x - 0.28, 2.72, min(z, z - s * 0.2)), (x + 0.28, 2.9, max(z, z - s * 0.2))))
-        # the gallery's floor, which is the ceiling of the aisle, on beams
-        plasters.append(box((-ex, FLOOR_2 - 0.3, min(s * (COURT_Z - 0.31), z + s * 0.3)),
-                            (ex, FLOOR_2, max(s * (COURT_Z - 0.31), z + s * 0.3)), 1.4))
+        z0, z1 = sorted((s * (COURT_Z - 0.31), s * (COURT_Z + 0.31)))
+        plasters.append(box((-ex, FLOOR_2 - 0.3, z0), (ex, FLOOR_2, z1), 1.4))
         x = s * ex
         walls.append(box((min(x, x + s * 0.3), 0, -wz), (max(x, x + s * 0.3), FLOOR_2, wz), 1.2))
         plasters.append(box((min(x, x + s * 0.3), FLOOR_2, -wz), (max(x, x + s * 0.3), ROOF_Y, wz), 1.4))
@@ -124,19 +123,21 @@ def shell(doc, mat):
 
 
 def timber(doc, mat):
-    """Beams under the gallery's floor and an open roof of tie beams, rafters and boards."""
+    """The gallery's open joists, through which the lamps light the storey above, and a roof of trusses and boards."""
     beams = []
     for s in (-1, 1):
+        for z in (3.6, 4.05, 4.5, 4.95, 5.4, 5.85):
+            beams.append(box((-END_X, FLOOR_2 - 0.3, s * z - 0.06), (END_X, FLOOR_2 - 0.1, s * z + 0.06)))
         for x in COLUMNS_X:
             z0, z1 = sorted((s * (COURT_Z + 0.31), s * WALL_Z))
             beams.append(box((x - 0.11, FLOOR_2 - 0.55, z0), (x + 0.11, FLOOR_2 - 0.3, z1)))
-    ridge = ROOF_Y + 2.6
+    ridge = ROOF_Y + 2.2
     for x in COLUMNS_X:
         beams.append(box((x - 0.12, ROOF_Y - 0.35, -WALL_Z), (x + 0.12, ROOF_Y - 0.05, WALL_Z)))
         beams.append(box((x - 0.1, ROOF_Y - 0.05, -0.1), (x + 0.1, ridge - 0.15, 0.1)))
         for s in (-1, 1):
             beams.append(sweep([(x, ROOF_Y, s * WALL_Z), (x, ridge - 0.2, 0)], 0.12, 4))
-            beams.append(sweep([(x, ROOF_Y, s * 0.15), (x, ROOF_Y + 1.25, s * 2.6)], 0.08, 4))
+            beams.append(sweep([(x, ROOF_Y, s * 0.15), (x, ROOF_Y + 1.15, s * 2.6)], 0.08, 4))
     roof = []
     for s in (-1, 1):
         a, b = (-END_X, ROOF_Y, s * (WALL_Z + 0.3)), (END_X, ROOF_Y, s * (WALL_Z + 0.3))
