@@ -22,6 +22,38 @@ struct CutPrimitive {
 
 constexpr std::size_t kBatchVertices = 255;  // meshoptimizer's limit
 
+struct Meshlets {
+  std::vector<meshopt_Meshlet> meshlets;
+  std::vector<std::uint32_t> vertices;
+  std::vector<std::uint8_t> corners;
+};
+
+std::size_t triangle_count(const Meshlets& pieces) {
+  std::size_t count = 0;
+  for (const meshopt_Meshlet& meshlet : pieces.meshlets) count += meshlet.triangle_count;
+  return count;
+}
+
+Meshlets build_meshlets(const std::vector<std::uint32_t>& indices, const std::vector<Vertex>& vertices,
+                        std::size_t batch_triangles) {
+  const std::size_t bound = meshopt_buildMeshletsBound(indices.size(), kBatchVertices, batch_triangles);
+  const auto with_room = [&] {
+    return Meshlets{std::vector<meshopt_Meshlet>(bound), std::vector<std::uint32_t>(bound * kBatchVertices),
+                    std::vector<std::uint8_t>(bound * batch_triangles * 3)};
+  };
+  Meshlets out = with_room();
+  out.meshlets.resize(meshopt_buildMeshlets(out.meshlets.data(), out.vertices.data(), out.corners.data(),
+                                            indices.data(), indices.size(), &vertices[0].position_ls.x, vertices.size(),
+                                            sizeof(Vertex), kBatchVertices, batch_triangles, 0.0f));
+  if (triangle_count(out) == indices.size() / 3) return out;
+  // Where squares of distances overflow (1e20 m), it leaves triangles out: cut in the order they come.
+  out = with_room();
+  out.meshlets.resize(meshopt_buildMeshletsScan(out.meshlets.data(), out.vertices.data(), out.corners.data(),
+                                                indices.data(), indices.size(), vertices.size(), kBatchVertices,
+                                                batch_triangles));
+  return out;
+}
+
 CutPrimitive cut(Primitive&& primitive, std::size_t batch_triangles) {
   weld(primitive);
   if (primitive.needs_tangents) make_tangents(primitive);
@@ -31,16 +63,10 @@ CutPrimitive cut(Primitive&& primitive, std::size_t batch_triangles) {
   std::vector<std::uint32_t> indices(primitive.indices.size());
   meshopt_optimizeVertexCache(indices.data(), primitive.indices.data(), indices.size(), primitive.vertices.size());
 
-  const std::size_t bound = meshopt_buildMeshletsBound(indices.size(), kBatchVertices, batch_triangles);
-  std::vector<meshopt_Meshlet> meshlets(bound);
-  std::vector<std::uint32_t> vertices(bound * kBatchVertices);
-  std::vector<std::uint8_t> corners(bound * batch_triangles * 3);
-  meshlets.resize(meshopt_buildMeshlets(meshlets.data(), vertices.data(), corners.data(), indices.data(),
-                                        indices.size(), &primitive.vertices[0].position_ls.x, primitive.vertices.size(),
-                                        sizeof(Vertex), kBatchVertices, batch_triangles, 0.0f));
-  for (const meshopt_Meshlet& meshlet : meshlets) {
+  const Meshlets pieces = build_meshlets(indices, primitive.vertices, batch_triangles);
+  for (const meshopt_Meshlet& meshlet : pieces.meshlets) {
     for (std::size_t i = 0; i < std::size_t{meshlet.triangle_count} * 3; ++i) {
-      out.indices.push_back(vertices[meshlet.vertex_offset + corners[meshlet.triangle_offset + i]]);
+      out.indices.push_back(pieces.vertices[meshlet.vertex_offset + pieces.corners[meshlet.triangle_offset + i]]);
     }
     out.triangle_counts.push_back(meshlet.triangle_count);
   }

@@ -7,22 +7,33 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cstring>
+#include <string_view>
 
 #include "../error.h"
+#include "png.h"
 
 namespace chandelier::baker {
 namespace {
 
-/// A file name for OpenImageIO to choose its reader by.
-const char* name_by_content(const EncodedImage& image) {
-  static constexpr std::uint8_t kPng[] = {0x89, 'P', 'N', 'G'}, kJpeg[] = {0xFF, 0xD8, 0xFF};
-  const auto starts = [&](std::span<const std::uint8_t> magic) {
-    return image.bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), image.bytes.begin());
-  };
-  if (starts(kPng)) return "image.png";
-  if (starts(kJpeg)) return "image.jpg";
-  fail(image.where, "is neither PNG nor JPEG (" + std::to_string(image.bytes.size()) + " bytes)");
+bool starts_with(const std::vector<std::uint8_t>& bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() &&
+         std::equal(magic.begin(), magic.end(), bytes.begin(),
+                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+}
+
+bool is_png(const EncodedImage& image) {
+  return starts_with(image.bytes, "\x89PNG");
+}
+bool is_jpeg(const EncodedImage& image) {
+  return starts_with(image.bytes, "\xFF\xD8\xFF");
+}
+
+/// Formats that glTF extensions bring.
+std::string name_of_format(const EncodedImage& image) {
+  if (starts_with(image.bytes, "\xABKTX 20")) return " but KTX2";
+  if (starts_with(image.bytes, "RIFF")) return " but WebP";
+  if (starts_with(image.bytes, "DDS ")) return " but DDS";
+  return "";
 }
 
 std::string one_line(std::string text) {
@@ -64,13 +75,17 @@ Made make_image(const EncodedImage& image, ImageUse use) {
 }  // namespace
 
 Texels decode_image(const EncodedImage& image) {
-  const char* name = name_by_content(image);
+  if (!is_png(image) && !is_jpeg(image)) {
+    const std::string size = std::to_string(image.bytes.size());
+    fail(image.where, "is neither PNG nor JPEG" + name_of_format(image) + " (" + size + " bytes)");
+  }
+  const std::vector<std::uint8_t> bytes = is_png(image) ? essential_png(image.bytes, image.where) : image.bytes;
   OIIO::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not premultiplied
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(image.bytes.data()), image.bytes.size());
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
   void* proxy = &memory;  // among the hints: the JPEG reader forgets open()'s own argument
   hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(name, &hints, &memory);
+  const auto input = OIIO::ImageInput::open(is_png(image) ? "image.png" : "image.jpg", &hints, &memory);
   if (!input) fail(image.where, "cannot be decoded: " + one_line(OIIO::geterror()));
   input->threads(1);  // images are decoded side by side already
   const OIIO::ImageSpec& spec = input->spec();
@@ -84,12 +99,12 @@ Texels decode_image(const EncodedImage& image) {
   }
   const std::size_t texels = std::size_t(spec.width) * std::size_t(spec.height);
   const auto channels = static_cast<std::size_t>(spec.nchannels);
-  std::vector<std::uint8_t> bytes(texels * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, bytes.data())) {
+  std::vector<std::uint8_t> values(texels * channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, values.data())) {
     fail(image.where, "cannot be decoded: " + one_line(input->geterror()));
   }
   return {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
-          to_rgba(bytes, texels, channels)};
+          to_rgba(values, texels, channels)};
 }
 
 void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const Progress& progress, Strings& strings,

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bad input: each is refused with a line that names the place, the fault and the value.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "gltf_builder.h"
+
+namespace chandelier::baker::test {
+namespace {
+
+struct Case {
+  const char* name;
+  std::function<void(GltfBuilder&)> spoil;  // a good triangle
+  const char* expected;                     // after "FILE: "
+};
+
+Json& primitive(GltfBuilder& gltf) {
+  return gltf.json["meshes"][0]["primitives"][0];
+}
+
+// The triangle's accessors: 0 POSITION, 1 indices.
+const Case kCases[] = {
+    {"no asset", [](GltfBuilder& g) { g.json.erase("asset"); }, "glTF: has no asset"},
+    {"old version", [](GltfBuilder& g) { g.json["asset"]["version"] = "1.0"; },
+     "glTF, asset, version: is not 2.x (\"1.0\")"},
+    {"required extension", [](GltfBuilder& g) { g.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+     "extensionsRequired: unknown extension (KHR_draco_mesh_compression)"},
+    {"section of another type", [](GltfBuilder& g) { g.json["nodes"] = "none"; }, "nodes: is not an array (\"none\")"},
+    {"entry of another type", [](GltfBuilder& g) { g.json["nodes"][0] = 7; }, "node 0: is not an object (7)"},
+    {"scene out of range", [](GltfBuilder& g) { g.json["scene"] = 3; },
+     "glTF, scene: points past the end, there are 0 (3)"},
+    {"negative index", [](GltfBuilder& g) { g.json["nodes"][0]["mesh"] = -1; },
+     "node 0 'triangle', mesh: is not an index (-1)"},
+    {"mesh out of range", [](GltfBuilder& g) { g.json["nodes"][0]["mesh"] = 5; },
+     "node 0 'triangle', mesh: points past the end, there are 1 (5)"},
+    {"child out of range", [](GltfBuilder& g) { g.json["nodes"][0]["children"] = {1}; },
+     "node 0 'triangle', children: points past the end, there are 1 (1)"},
+    {"node below itself", [](GltfBuilder& g) { g.json["nodes"][0]["children"] = {0}; },
+     "node 0 'triangle': is below itself (a cycle of nodes)"},
+    {"cycle of two",
+     [](GltfBuilder& g) {
+       g.json["nodes"][0]["children"] = {1};
+       g.add_node({{"children", {0}}});
+     },
+     "node 0 'triangle': is below itself (a cycle of nodes)"},
+    {"two parents",
+     [](GltfBuilder& g) {
+       g.add_node({{"children", {0}}});
+       g.add_node({{"children", {0}}});
+     },
+     "node 0 'triangle': has two parents (1 and 2)"},
+    {"node twice in the scene",
+     [](GltfBuilder& g) {
+       g.json["scenes"] = {{{"nodes", {0, 0}}}};
+     },
+     "node 0 'triangle': is in the scene twice"},
+    {"short matrix",
+     [](GltfBuilder& g) {
+       g.json["nodes"][0]["matrix"] = {1, 2};
+     },
+     "node 0 'triangle', matrix: is not an array of 16 numbers ([1,2])"},
+    {"zero rotation",
+     [](GltfBuilder& g) {
+       g.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
+     },
+     "node 0 'triangle', rotation: has no direction (all zero)"},
+    {"translation beyond floats",
+     [](GltfBuilder& g) {
+       g.json["nodes"][0]["translation"] = {1e39, 0, 0};
+     },
+     "node 0 'triangle', translation: is out of range (1e+39)"},
+    {"transforms that overflow together",
+     [](GltfBuilder& g) {
+       g.json["nodes"][0]["scale"] = {1e30, 1e30, 1e30};
+       g.json["nodes"][0]["children"] = {1};
+       g.add_node({{"scale", {1e30, 1, 1}}});
+     },
+     "node 1: its place in the world is not finite"},
+    {"vertices that overflow",
+     [](GltfBuilder& g) {
+       primitive(g)["attributes"]["POSITION"] = g.add_positions({0, 0, 0, 1e30f, 0, 0, 0, 1e30f, 0});
+       g.json["nodes"][0]["scale"] = {1e30, 1e30, 1e30};
+     },
+     "node 0 'triangle': its place in the world is not finite"},
+    {"NaN position",
+     [](GltfBuilder& g) {
+       primitive(g)["attributes"]["POSITION"] = g.add_positions({0, 0, 0, 1, NAN, 0, 0, 1, 0});
+     },
+     "mesh 0, primitive 0, attribute POSITION: value is not finite (nan in element 1)"},
+    {"infinite position",
+     [](GltfBuilder& g) {
+       primitive(g)["attributes"]["POSITION"] = g.add_positions({0, 0, 0, 1, 0, 0, 0, 1, INFINITY});
+     },
+     "mesh 0, primitive 0, attribute POSITION: value is not finite (inf in element 2)"},
+    {"position of two components",
+     [](GltfBuilder& g) {
+       primitive(g)["attributes"]["POSITION"] = g.add_floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+     },
+     "mesh 0, primitive 0, attribute POSITION: accessor 2 has the wrong type (2 components)"},
+    {"index out of range",
+     [](GltfBuilder& g) {
+       primitive(g)["indices"] = g.add_indices({0, 1, 70});
+     },
+     "mesh 0, primitive 0, indices: index is out of range, there are 3 vertices (70 at 2)"},
+    {"float indices",
+     [](GltfBuilder& g) {
+       primitive(g)["indices"] = g.add_floats({0, 1, 2}, "SCALAR", 1);
+     },
+     "mesh 0, primitive 0, indices: component type cannot hold indices (5126)"},
+    {"unknown mode", [](GltfBuilder& g) { primitive(g)["mode"] = 7; },
+     "mesh 0, primitive 0, mode: is out of range (7)"},
+    {"attribute out of range", [](GltfBuilder& g) { primitive(g)["attributes"]["NORMAL"] = 9; },
+     "mesh 0, primitive 0, attribute NORMAL: points past the end, there are 2 (9)"},
+    {"attribute of another count",
+     [](GltfBuilder& g) {
+       primitive(g)["attributes"]["NORMAL"] = g.add_positions({0, 0, 1});
+     },
+     "mesh 0, primitive 0, attribute NORMAL: has another count than POSITION, which has 3 (1)"},
+    {"material out of range", [](GltfBuilder& g) { primitive(g)["material"] = 0; },
+     "mesh 0, primitive 0, material: points past the end, there are 0 (0)"},
+    {"accessor past its view", [](GltfBuilder& g) { g.json["accessors"][0]["count"] = 4; },
+     "mesh 0, primitive 0, attribute POSITION: accessor ends past buffer view 0 (4 elements of 12 bytes, stride 12, at "
+     "byte 0 of 36)"},
+    {"accessor that would wrap around", [](GltfBuilder& g) { g.json["accessors"][0]["byteOffset"] = 9007199254740992; },
+     "mesh 0, primitive 0, attribute POSITION: accessor ends past buffer view 0 (3 elements of 12 bytes, stride 12, at "
+     "byte 9007199254740992 of 36)"},
+    {"huge count", [](GltfBuilder& g) { g.json["accessors"][0]["count"] = 4000000000; },
+     "mesh 0, primitive 0, attribute POSITION: accessor ends past buffer view 0 (4000000000 elements in 36 bytes)"},
+    {"huge count without data",
+     [](GltfBuilder& g) {
+       g.json["accessors"][0]["count"] = 4000000000;
+       g.json["accessors"][0].erase("bufferView");
+     },
+     "mesh 0, primitive 0, attribute POSITION: accessor without a buffer view is too long (4000000000)"},
+    {"count beyond 32 bits", [](GltfBuilder& g) { g.json["accessors"][0]["count"] = 4294967295; },
+     "accessor 0, count: is out of range (4294967295)"},
+    {"count that is no number", [](GltfBuilder& g) { g.json["accessors"][0]["count"] = "3"; },
+     "accessor 0, count: is not a whole number (\"3\")"},
+    {"unknown component type", [](GltfBuilder& g) { g.json["accessors"][0]["componentType"] = 5130; },
+     "accessor 0, componentType: is out of range (5130)"},
+    {"unknown accessor type", [](GltfBuilder& g) { g.json["accessors"][0]["type"] = "VEC5"; },
+     "accessor 0, type: is not a glTF type (\"VEC5\")"},
+    {"view past its buffer", [](GltfBuilder& g) { g.json["bufferViews"][0]["byteLength"] = 1000; },
+     "mesh 0, primitive 0, attribute POSITION: buffer view 0 ends past buffer 0 (0 + 1000 of 42 bytes)"},
+    {"stride that is no multiple of 4", [](GltfBuilder& g) { g.json["bufferViews"][0]["byteStride"] = 13; },
+     "buffer view 0, byteStride: is not a multiple of 4 (13)"},
+    {"sparse index out of range",
+     [](GltfBuilder& g) {
+       g.json["accessors"][0]["sparse"] = {
+           {"count", 1},
+           {"indices", {{"bufferView", g.add_view<std::uint8_t>({9})}, {"componentType", kUnsignedByte}}},
+           {"values", {{"bufferView", g.add_view<float>({0, 0, 0})}}}};
+     },
+     "mesh 0, primitive 0, attribute POSITION, sparse indices: index is out of range (9)"},
+    {"short sparse values",
+     [](GltfBuilder& g) {
+       g.json["accessors"][0]["sparse"] = {
+           {"count", 2},
+           {"indices", {{"bufferView", g.add_view<std::uint8_t>({0, 1})}, {"componentType", kUnsignedByte}}},
+           {"values", {{"bufferView", g.add_view<float>({0, 0, 0})}}}};
+     },
+     "mesh 0, primitive 0, attribute POSITION, sparse values: accessor ends past buffer view 3 (2 elements of 12 "
+     "bytes, "
+     "stride 12, at byte 0 of 12)"},
+    {"light out of range", [](GltfBuilder& g) { g.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0; },
+     "node 0 'triangle', extensions, KHR_lights_punctual, light: points past the end, there are 0 (0)"},
+    {"unknown light type",
+     [](GltfBuilder& g) {
+       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "area"}, {"name", "sky"}}};
+     },
+     "light 0 'sky', type: is not a light type (\"area\")"},
+    {"negative intensity",
+     [](GltfBuilder& g) {
+       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", -1}}};
+     },
+     "light 0, intensity: is out of range (-1)"},
+    {"range of zero",
+     [](GltfBuilder& g) {
+       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"range", 0}}};
+     },
+     "light 0, range: is out of range (0)"},
+    {"cone inside out",
+     [](GltfBuilder& g) {
+       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+           {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.25}}}}};
+     },
+     "light 0, spot, innerConeAngle: is wider than the outer cone (0.5)"},
+    {"camera without an angle",
+     [](GltfBuilder& g) {
+       g.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"znear", 1}}}}};
+     },
+     "camera 0, perspective: has no yfov"},
+    {"texture out of range",
+     [](GltfBuilder& g) {
+       g.json["materials"] = {{{"name", "m"}, {"normalTexture", {{"index", 0}}}}};
+     },
+     "material 0 'm', normalTexture, index: points past the end, there are 0 (0)"},
+};
+
+TEST(BadInput, IsRefusedWithPlaceFaultAndValue) {
+  for (const Case& each : kCases) {
+    GltfBuilder gltf = one_triangle();
+    each.spoil(gltf);
+    const std::filesystem::path path = gltf.save("bad");
+    EXPECT_EQ(error_of(path), path.string() + ": " + each.expected) << each.name;
+  }
+}
+
+std::string error_of_text(const std::string& text) {
+  const std::filesystem::path path = scratch_folder() / "text.gltf";
+  write_bytes(path, text);
+  const std::string line = error_of(path);
+  EXPECT_EQ(line.rfind(path.string() + ": ", 0), 0u) << line;
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  return line.substr(std::min(line.size(), path.string().size() + 2));
+}
+
+TEST(BadInput, IsNamedWhereItIsNoGltf) {
+  EXPECT_EQ(error_of_text(""), "is not a glTF: it is empty");
+  EXPECT_EQ(error_of_text("[]"), "is not a glTF: the JSON is not an object");
+  EXPECT_EQ(error_of_text("hello").rfind("is not a glTF: parse error at line 1, column 1", 0), 0u);
+  EXPECT_EQ(error_of_text("\x89PNG\r\n\x1a\n").rfind("is not a glTF: ", 0), 0u);
+  EXPECT_EQ(error_of_text("{\"asset\": {\"version\": \"2.0\"}").rfind("is not a glTF: parse error", 0), 0u);
+  EXPECT_EQ(error_of_text(std::string(100000, '[')), "JSON is nested too deeply (more than 200)");
+}
+
+TEST(BadInput, IsNamedWhereAFileIsMissing) {
+  const std::filesystem::path path = scratch_folder() / "nowhere.gltf";
+  EXPECT_EQ(error_of(path), path.string() + ": no such file (" + path.string() + ")");
+  EXPECT_EQ(error_of(scratch_folder()),
+            scratch_folder().string() + ": is not a file (" + scratch_folder().string() + ")");
+}
+
+/// The error for a triangle whose buffer has this uri.
+std::string buffer_error(const std::string& uri) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["buffers"] = {{{"byteLength", gltf.bytes.size()}, {"uri", uri}}};
+  gltf.bytes.clear();
+  const std::filesystem::path path = gltf.save("buffer");
+  return error_of(path).substr(path.string().size() + 2);
+}
+
+TEST(BadInput, IsNamedWhereABufferCannotBeRead) {
+  EXPECT_EQ(buffer_error("gone.bin"), "buffer 0: no such file (" + (scratch_folder() / "gone.bin").string() + ")");
+  EXPECT_EQ(buffer_error("http://example.org/a.bin"),
+            "buffer 0: URI is not relative to the file (http://example.org/a.bin)");
+  EXPECT_EQ(buffer_error("file:///etc/hostname"), "buffer 0: URI is not relative to the file (file:///etc/hostname)");
+  EXPECT_EQ(buffer_error("/etc/hostname"), "buffer 0: URI is not relative to the file (/etc/hostname)");
+  EXPECT_EQ(buffer_error(""), "buffer 0: URI names no file ()");
+  EXPECT_EQ(buffer_error("a%00b"), "buffer 0: URI names no file (a%00b)");
+  EXPECT_EQ(buffer_error("data:application/octet-stream;base64,AAAA"),
+            "buffer 0: is shorter than its byteLength 42 (3 bytes)");
+  EXPECT_EQ(buffer_error("data:application/octet-stream;base64,A*"), "buffer 0: data URI is not base64 ('*')");
+  EXPECT_EQ(buffer_error("data:nothing"), "buffer 0: data URI has no data (data:nothing)");
+  write_bytes(scratch_folder() / "short.bin", "12345");
+  EXPECT_EQ(buffer_error("short.bin"), "buffer 0: is shorter than its byteLength 42 (5 bytes)");
+}
+
+TEST(BadInput, IsNamedWhereAnImageCannotBeRead) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["materials"] = {{{"emissiveTexture", {{"index", 0}}}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  primitive(gltf)["material"] = 0;
+  const auto error = [&](const Json& image) {
+    gltf.json["images"] = {image};
+    const std::filesystem::path path = gltf.save("image");
+    return error_of(path).substr(path.string().size() + 2);
+  };
+  EXPECT_EQ(error({{"name", "sky"}}), "image 0 'sky': has neither uri nor bufferView");
+  EXPECT_EQ(error({{"uri", "gone.png"}}),
+            "image 0 (gone.png): no such file (" + (scratch_folder() / "gone.png").string() + ")");
+  write_bytes(scratch_folder() / "text.png", "no picture");
+  EXPECT_EQ(error({{"uri", "text.png"}}), "image 0 (text.png): is neither PNG nor JPEG (10 bytes)");
+  EXPECT_EQ(error({{"bufferView", 7}}), "image 0, bufferView: points past the end, there are 2 (7)");
+}
+
+TEST(BadInput, OnlyWarnsOfUnknownExtensionsThatAreOptional) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["extensionsUsed"] = {"KHR_materials_ior", "KHR_lights_punctual"};
+  Warnings warnings;
+  EXPECT_EQ(gltf.import(&warnings).instances.size(), 1u);
+  ASSERT_EQ(warnings.lines().size(), 1u);
+  EXPECT_NE(warnings.lines()[0].find("extensionsUsed: unknown extension is ignored (KHR_materials_ior)"),
+            std::string::npos);
+}
+
+TEST(BadInput, IsWarnedOfOnceHoweverOftenItOccurs) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["nodes"][0]["scale"] = {0, 0, 0};
+  for (int i = 0; i < 9; ++i) gltf.add_node({{"mesh", 0}, {"scale", {0, 0, 0}}});
+  Warnings warnings;
+  gltf.import(&warnings);
+  ASSERT_EQ(warnings.lines().size(), 1u);
+  EXPECT_NE(warnings.lines()[0].find("node 0 'triangle' (and 9 more): a mesh under zero scale"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace chandelier::baker::test

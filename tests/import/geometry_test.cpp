@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Primitives: modes, missing indices and normals, texture coordinates, vertex colours.
+#include "import/geometry.h"
+
+#include <gtest/gtest.h>
+
+#include "gltf_builder.h"
+
+namespace chandelier::baker::test {
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+
+constexpr int kPoints = 0, kLines = 1, kTriangles = 4, kStrip = 5, kFan = 6;
+
+TEST(TriangleList, FollowsTheFormulasOfTheModes) {
+  EXPECT_EQ(triangle_list(kTriangles, {0, 1, 2, 3, 4, 5, 6}), (Indices{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(triangle_list(kStrip, {10, 11, 12, 13, 14}), (Indices{10, 11, 12, 11, 13, 12, 12, 13, 14}));
+  EXPECT_EQ(triangle_list(kFan, {10, 11, 12, 13}), (Indices{11, 12, 10, 12, 13, 10}));
+  EXPECT_EQ(triangle_list(kStrip, {0, 1}), Indices{});
+}
+
+/// Corners of the unit square in strip order: the two triangles of a strip both face +z.
+const std::vector<float> kStripSquare = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+
+GltfBuilder primitive_of_mode(int mode) {
+  GltfBuilder gltf;
+  gltf.add_mesh({{"attributes", {{"POSITION", gltf.add_positions(kStripSquare)}}}, {"mode", mode}});
+  gltf.add_node({{"mesh", 0}});
+  return gltf;
+}
+
+TEST(Primitive, MakesStripsAndFansWithoutIndicesFaceTheRightWay) {
+  for (const int mode : {kStrip, kFan}) {
+    GltfBuilder gltf = primitive_of_mode(mode);
+    // A fan goes around: its square needs the last two corners swapped.
+    if (mode == kFan) {
+      gltf.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
+          gltf.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+    }
+    const Scene scene = gltf.import();
+    const Primitive& primitive = scene.meshes.at(0).primitives.at(0);
+    ASSERT_EQ(primitive.indices.size(), 6u);
+    for (const Vertex& vertex : primitive.vertices) EXPECT_EQ(vertex.normal_ls, glm::vec3(0, 0, 1)) << "mode " << mode;
+  }
+}
+
+TEST(Primitive, SkipsPointsAndLinesWithAWarning) {
+  for (const int mode : {kPoints, kLines, 2, 3}) {
+    Warnings warnings;
+    const Scene scene = primitive_of_mode(mode).import(&warnings);
+    EXPECT_TRUE(scene.meshes.at(0).primitives.empty());
+    ASSERT_EQ(warnings.lines().size(), 1u);
+    EXPECT_NE(warnings.lines()[0].find("mesh 0, primitive 0: points and lines are skipped"), std::string::npos);
+  }
+}
+
+TEST(Primitive, GetsFlatNormalsWhereItHasNone) {
+  // Two triangles that share an edge and stand at a right angle: facing +z and +x.
+  GltfBuilder gltf;
+  const int positions = gltf.add_positions({0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, -1});
+  gltf.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", gltf.add_indices({0, 1, 2, 0, 3, 1})}});
+  gltf.add_node({{"mesh", 0}});
+  const Primitive primitive = gltf.import().meshes.at(0).primitives.at(0);
+  ASSERT_EQ(primitive.vertices.size(), 6u);  // the shared edge is no longer shared
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(primitive.vertices[i].normal_ls, glm::vec3(0, 0, 1));
+  for (std::size_t i = 3; i < 6; ++i) EXPECT_EQ(primitive.vertices[i].normal_ls, glm::vec3(1, 0, 0));
+}
+
+TEST(Primitive, MakesNormalsUnitLengthAndMendsThoseOfLengthZero) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+      gltf.add_floats({0, 3, 4, 0, 0, 0, 2, 0, 0}, "VEC3", 3);
+  const Primitive primitive = gltf.import().meshes.at(0).primitives.at(0);
+  EXPECT_EQ(primitive.vertices[0].normal_ls, glm::vec3(0, 0.6f, 0.8f));
+  EXPECT_EQ(primitive.vertices[1].normal_ls, glm::vec3(0, 0, 1));  // the triangle's
+  EXPECT_EQ(primitive.vertices[2].normal_ls, glm::vec3(1, 0, 0));
+}
+
+TEST(Primitive, ReadsBothTextureCoordinateSetsOfAnyType) {
+  GltfBuilder gltf = one_triangle();
+  Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TEXCOORD_0"] = gltf.add_floats({0, 1, 2, 3, 4, 5}, "VEC2", 2);
+  attributes["TEXCOORD_1"] = gltf.add_accessor<std::uint8_t>({0, 255, 51, 0, 255, 255}, kUnsignedByte, "VEC2", 3, true);
+  const Primitive primitive = gltf.import().meshes.at(0).primitives.at(0);
+  EXPECT_EQ(primitive.vertices[1].uv0, glm::vec2(2, 3));
+  EXPECT_EQ(primitive.vertices[1].uv1, glm::vec2(0.2f, 0));
+}
+
+std::uint32_t color_of(GltfBuilder gltf, int accessor) {
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor;
+  return gltf.import().meshes.at(0).primitives.at(0).vertices.at(0).color;
+}
+
+TEST(Primitive, PacksVertexColoursOfEachType) {
+  GltfBuilder gltf = one_triangle();
+  // 1.0 -> 255, 0.5 -> 127.5 rounds to 128, 0.2 -> 51; clamped above 1; alpha 255 where there is none.
+  EXPECT_EQ(color_of(gltf, gltf.add_floats({1, 0.5f, 0.2f, 0, 0, 0, 0, 0, 0}, "VEC3", 3)), 0xFF3380FFu);
+  EXPECT_EQ(color_of(gltf, gltf.add_floats({2, 0.5f, 0.2f, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 4)), 0x003380FFu);
+  EXPECT_EQ(color_of(gltf, gltf.add_accessor<std::uint8_t>({1, 2, 3, 4, 0, 0, 0, 0, 0, 0, 0, 0}, kUnsignedByte, "VEC4",
+                                                           3, true)),
+            0x04030201u);
+  EXPECT_EQ(color_of(gltf, gltf.add_accessor<std::uint16_t>({65535, 257, 0, 0, 0, 0, 0, 0, 0}, kUnsignedShort, "VEC3",
+                                                            3, true)),
+            0xFF0001FFu);
+  EXPECT_EQ(one_triangle().import().meshes.at(0).primitives.at(0).vertices.at(0).color, 0xFFFFFFFFu);
+}
+
+}  // namespace
+}  // namespace chandelier::baker::test

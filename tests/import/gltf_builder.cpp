@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes small glTF files in tests.
+#include "gltf_builder.h"
+
+#include <unistd.h>
+
+#include <fstream>
+
+#include "import/import.h"
+
+namespace chandelier::baker::test {
+
+std::string base64(const std::vector<std::uint8_t>& bytes) {
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+std::string GltfBuilder::text() const {
+  Json whole = json;
+  if (!bytes.empty()) {
+    whole["buffers"] = {
+        {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+  }
+  return whole.dump(1);
+}
+
+std::filesystem::path scratch_folder() {
+  static const struct Folder {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("chandelier-import-" + std::to_string(getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() {
+      std::error_code error;
+      std::filesystem::remove_all(path, error);
+    }
+  } folder;
+  return folder.path;
+}
+
+void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+std::filesystem::path GltfBuilder::save(const std::string& name) const {
+  const std::filesystem::path path = scratch_folder() / (name + ".gltf");
+  write_bytes(path, text());
+  return path;
+}
+
+Scene GltfBuilder::import(Warnings* warnings) const {
+  Scene scene;
+  Warnings unread;
+  import_gltf(save(), scene, warnings ? *warnings : unread);
+  return scene;
+}
+
+pack::Contents GltfBuilder::bake(const BakeSettings& settings) const {
+  return baker::bake(import(), settings, Progress(true));
+}
+
+GltfBuilder one_triangle() {
+  GltfBuilder gltf;
+  const int positions = gltf.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  gltf.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", gltf.add_indices({0, 1, 2})}});
+  gltf.add_node({{"mesh", 0}, {"name", "triangle"}});
+  return gltf;
+}
+
+std::string error_of(const std::filesystem::path& path) {
+  try {
+    Scene scene;
+    Warnings warnings;
+    import_gltf(path, scene, warnings);
+    baker::bake(std::move(scene), {}, Progress(true));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string text_of(const pack::Contents& pack, const pack::StringRef& ref) {
+  return {reinterpret_cast<const char*>(pack.strings.data()) + ref.offset_bytes, ref.size_bytes};
+}
+
+}  // namespace chandelier::baker::test

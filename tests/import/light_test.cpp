@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights: types, places, directions, names, ranges.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gltf_builder.h"
+
+namespace chandelier::baker::test {
+namespace {
+
+GltfBuilder with_light(const Json& light, const Json& node_fields = Json::object()) {
+  GltfBuilder gltf;
+  gltf.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  gltf.json["extensionsRequired"] = {"KHR_lights_punctual"};
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+  Json node = node_fields;
+  node["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  gltf.add_node(node);
+  return gltf;
+}
+
+void expect_near(const glm::vec3& a, const glm::vec3& b) {
+  EXPECT_LT(glm::length(a - b), 1e-6f);
+}
+
+TEST(Light, StandsWhereItsNodeStandsWithAnAuthoredRange) {
+  const pack::Contents pack = with_light({{"type", "point"}, {"name", "bulb"}, {"range", 7}, {"intensity", 30}},
+                                         {{"translation", {1, 2, 3}}, {"scale", {5, 5, 5}}})
+                                  .bake();
+  ASSERT_EQ(pack.lights.size(), 1u);
+  const pack::Light& light = pack.lights[0];
+  EXPECT_EQ(light.type, pack::LightType::point);
+  EXPECT_EQ(light.position_ws, glm::vec3(1, 2, 3));
+  EXPECT_EQ(light.range_m, 7);  // scale does not reach it
+  EXPECT_EQ(light.range_source, pack::RangeSource::authored);
+  EXPECT_EQ(light.intensity, 30);
+  EXPECT_EQ(light.color, glm::vec3(1));
+  EXPECT_EQ(light.inner_cone_cos, 1);
+  EXPECT_EQ(light.outer_cone_cos, -1);
+  EXPECT_EQ(text_of(pack, light.name), "bulb");
+}
+
+TEST(Light, IsNamedAfterItsNodeFirst) {
+  const pack::Contents pack = with_light({{"type", "point"}, {"name", "bulb"}}, {{"name", "desk"}}).bake();
+  EXPECT_EQ(text_of(pack, pack.lights.at(0).name), "desk");
+}
+
+TEST(Light, EndsWhereItsIlluminanceIsTheThresholdIfNothingElseIsSaid) {
+  const GltfBuilder gltf = with_light({{"type", "point"}, {"intensity", 40}, {"color", {0.25, 0.5, 0.1}}});
+  // 40 cd times the brightest channel, 0.5, is 20 cd: 0.05 lx at sqrt(20 / 0.05) = 20 m, 0.2 lx at 10 m.
+  const pack::Contents usual = gltf.bake();
+  EXPECT_FLOAT_EQ(usual.lights.at(0).range_m, 20);
+  EXPECT_EQ(usual.lights.at(0).range_source, pack::RangeSource::derived);
+  EXPECT_FLOAT_EQ(usual.bake_info.range_threshold_lx, 0.05f);
+  EXPECT_FLOAT_EQ(gltf.bake({.range_threshold_lx = 0.2f}).lights.at(0).range_m, 10);
+}
+
+TEST(Light, ShinesAlongItsNodesNegativeZ) {
+  const double half = std::sqrt(0.5);
+  const Json spot = {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.6}}}};
+  // A quarter turn about x takes -z to +y: the spot lights the ceiling.
+  const pack::Contents pack = with_light(spot, {{"rotation", {half, 0, 0, half}}, {"scale", {3, 1, 2}}}).bake();
+  const pack::Light& light = pack.lights.at(0);
+  EXPECT_EQ(light.type, pack::LightType::spot);
+  expect_near(light.direction_ws, {0, 1, 0});
+  EXPECT_FLOAT_EQ(light.inner_cone_cos, std::cos(0.1f));
+  EXPECT_FLOAT_EQ(light.outer_cone_cos, std::cos(0.6f));
+}
+
+TEST(Light, HasGltfsConeWhereNoAnglesAreGiven) {
+  const pack::Contents pack = with_light({{"type", "spot"}, {"spot", Json::object()}}).bake();
+  EXPECT_FLOAT_EQ(pack.lights.at(0).inner_cone_cos, 1);
+  EXPECT_NEAR(pack.lights.at(0).outer_cone_cos, std::sqrt(0.5), 1e-6);  // 45 degrees
+}
+
+TEST(Light, HasNeitherPlaceNorEndWhenDirectional) {
+  const pack::Contents pack =
+      with_light({{"type", "directional"}, {"intensity", 1000}, {"range", 5}}, {{"translation", {1, 2, 3}}}).bake();
+  const pack::Light& light = pack.lights.at(0);
+  EXPECT_EQ(light.type, pack::LightType::directional);
+  EXPECT_EQ(light.position_ws, glm::vec3(0));
+  EXPECT_EQ(light.range_m, 0);
+  EXPECT_EQ(light.range_source, pack::RangeSource::unbounded);
+  EXPECT_EQ(light.direction_ws, glm::vec3(0, 0, -1));
+}
+
+TEST(Light, IsSkippedWithAWarningWhereItGivesNoLight) {
+  for (const Json& dark : {Json{{"type", "point"}, {"intensity", 0}}, Json{{"type", "point"}, {"color", {0, 0, 0}}}}) {
+    Warnings warnings;
+    EXPECT_TRUE(with_light(dark).import(&warnings).lights.empty());
+    EXPECT_EQ(warnings.lines().size(), 1u);
+  }
+}
+
+TEST(Light, ServesManyNodes) {
+  GltfBuilder gltf = with_light({{"type", "point"}});
+  gltf.add_node({{"translation", {4, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  const pack::Contents pack = gltf.bake();
+  ASSERT_EQ(pack.lights.size(), 2u);
+  EXPECT_EQ(pack.lights[1].position_ws, glm::vec3(4, 0, 0));
+}
+
+}  // namespace
+}  // namespace chandelier::baker::test

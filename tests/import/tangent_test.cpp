@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tangents: which way they point, their sign, the seam between mirrored halves.
+#include <gtest/gtest.h>
+
+#include "bake/tangents.h"
+#include "bake/weld.h"
+#include "gltf_builder.h"
+
+namespace chandelier::baker::test {
+namespace {
+
+/// A square in z = 0 facing +z; uv as given for the corners (0,0) (1,0) (1,1) (0,1).
+Primitive square(const glm::vec2 (&uv)[4]) {
+  Primitive primitive;
+  const glm::vec3 positions[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  for (int i = 0; i < 4; ++i) {
+    Vertex vertex;
+    vertex.position_ls = positions[i];
+    vertex.normal_ls = {0, 0, 1};
+    vertex.uv0 = uv[i];
+    primitive.vertices.push_back(vertex);
+  }
+  primitive.indices = {0, 1, 2, 0, 2, 3};
+  return primitive;
+}
+
+TEST(Tangents, PointAlongGrowingUWithPositiveSignWhereVPointsDown) {
+  // The picture upright: u to the right, v = 0 at the top. Then the bitangent, cross(n, t) * w, is up: green's way.
+  Primitive primitive = square({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+  make_tangents(primitive);
+  ASSERT_EQ(primitive.vertices.size(), 4u);
+  for (const Vertex& vertex : primitive.vertices) EXPECT_EQ(vertex.tangent_ls, glm::vec4(1, 0, 0, 1));
+}
+
+TEST(Tangents, HaveNegativeSignWhereThePictureIsMirrored) {
+  Primitive primitive = square({{1, 1}, {0, 1}, {0, 0}, {1, 0}});  // u to the left
+  make_tangents(primitive);
+  for (const Vertex& vertex : primitive.vertices) EXPECT_EQ(vertex.tangent_ls, glm::vec4(-1, 0, 0, -1));
+}
+
+TEST(Tangents, FollowTheSecondTextureCoordinatesWhereTheNormalMapDoes) {
+  Primitive primitive = square({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+  for (Vertex& vertex : primitive.vertices) vertex.uv1 = {1 - vertex.uv0.y, vertex.uv0.x};  // u up, v right
+  primitive.tangents_from_uv1 = true;
+  make_tangents(primitive);
+  // u grows upward, and v to the right, so that green's way (against v) is left: cross(+z, +y) = -x, w = +1.
+  for (const Vertex& vertex : primitive.vertices) EXPECT_EQ(vertex.tangent_ls, glm::vec4(0, 1, 0, 1));
+}
+
+TEST(Tangents, SplitVerticesBetweenMirroredHalves) {
+  // Two quads side by side, the picture mirrored about the shared edge x = 1: (u is 0, 1, 0 along x).
+  Primitive primitive;
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 3; ++x) {
+      Vertex vertex;
+      vertex.position_ls = {x, y, 0};
+      vertex.normal_ls = {0, 0, 1};
+      vertex.uv0 = {x == 1, 1 - y};
+      primitive.vertices.push_back(vertex);
+    }
+  }
+  primitive.indices = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
+  make_tangents(primitive);
+  EXPECT_EQ(primitive.vertices.size(), 8u);  // the shared edge's two vertices are there twice
+  for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
+    const bool left = i < 6;
+    EXPECT_EQ(primitive.vertices[primitive.indices[i]].tangent_ls,
+              left ? glm::vec4(1, 0, 0, 1) : glm::vec4(-1, 0, 0, -1));
+  }
+}
+
+TEST(Tangents, AreAcrossTheNormalWhereTextureCoordinatesSayNothing) {
+  Primitive primitive = square({{0, 0}, {0, 0}, {0, 0}, {0, 0}});
+  make_tangents(primitive);
+  for (const Vertex& vertex : primitive.vertices) {
+    EXPECT_NEAR(glm::length(glm::vec3(vertex.tangent_ls)), 1, 1e-6);
+    EXPECT_NEAR(glm::dot(glm::vec3(vertex.tangent_ls), vertex.normal_ls), 0, 1e-6);
+  }
+}
+
+TEST(Weld, MergesEqualVerticesAndDropsTrianglesThatCollapse) {
+  Primitive primitive = square({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+  const Vertex first = primitive.vertices[0];
+  primitive.vertices.push_back(first);                           // number 4 is number 0 again
+  primitive.indices.insert(primitive.indices.end(), {4, 2, 3,    // a triangle of its own
+                                                     0, 4, 1,    // repeats a vertex once welded
+                                                     1, 1, 2});  // repeats one outright
+  weld(primitive);
+  EXPECT_EQ(primitive.vertices.size(), 4u);
+  EXPECT_EQ(primitive.indices.size(), 9u);
+}
+
+}  // namespace
+}  // namespace chandelier::baker::test
