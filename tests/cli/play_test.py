@@ -1,0 +1,362 @@
+# SPDX-License-Identifier: Apache-2.0
+# Runs chandelier-play as a user would: pictures, statistics, comparisons, a window, and everything that can go wrong.
+import html.parser
+import json
+import os
+import pathlib
+import re
+import select
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import jsonschema
+import numpy
+
+SOURCE = pathlib.Path(os.environ["CHANDELIER_SOURCE"])
+PLAY = os.environ["CHANDELIER_PLAY"]
+BAKE = os.environ["CHANDELIER_BAKE"]
+SKIPPED = 77  # exit status that ctest shows as "Skipped"
+LIGHTS = 32  # in examples/cornell.py
+SMALL = ["--size", "96x54", "--face-size", "64"]
+PATIENCE_S = 120  # before a hang is called one; no test asserts a time
+
+
+def schema_validator(name):
+    schemas = {page.name: json.loads(page.read_text()) for page in (SOURCE / "schemas").glob("*.schema.json")}
+    jsonschema.Draft202012Validator.check_schema(schemas[name])
+    resolver = jsonschema.RefResolver(name, schemas[name], store=schemas)
+    return jsonschema.Draft202012Validator(schemas[name], resolver=resolver)
+
+
+def read_pfm(path):
+    with open(path, "rb") as file:
+        assert file.readline() == b"PF\n"
+        width, height = map(int, file.readline().split())
+        assert float(file.readline()) == -1.0
+        return numpy.frombuffer(file.read(), "<f4").reshape(height, width, 3)[::-1]
+
+
+def png_size(path):
+    head = pathlib.Path(path).read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n"
+    return struct.unpack(">II", head[16:24])
+
+
+class PlayTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.made = tempfile.TemporaryDirectory()
+        cls.pack = pathlib.Path(cls.made.name) / "cornell.chandelier"
+        scene = cls.pack.with_suffix(".glb")
+        subprocess.run([sys.executable, SOURCE / "examples/cornell.py", "-o", scene], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([BAKE, scene, "-o", cls.pack], check=True, stdout=subprocess.DEVNULL)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.made.cleanup()
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def play(self, *arguments, env=None):
+        return subprocess.run([PLAY, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, env=env,
+                              timeout=PATIENCE_S)
+
+    def play_well(self, *arguments):
+        done = self.play(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def assert_fails(self, code, because, *arguments, env=None):
+        before = sorted(self.folder.rglob("*"))
+        done = self.play(*arguments, env=env)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertRegex(done.stderr, r"\Achandelier-play: error: [^\n]+\n\Z")
+        self.assertRegex(done.stderr, because)
+        self.assertEqual(sorted(self.folder.rglob("*")), before, "something was left behind")
+
+    def stats(self, *arguments):
+        self.play_well(self.pack, "--output", "s.png", "--stats", "s.json", *SMALL, *arguments)
+        stats = json.loads((self.folder / "s.json").read_text())
+        schema_validator("stats.schema.json").validate(stats)
+        return stats
+
+
+class Headless(PlayTest):
+    def test_statistics_say_what_was_asked_and_done(self):
+        stats = self.stats("--frames", 3, "--preset", "lightcluster", "--d-init", 0.25, "--cull", "none")
+        self.assertEqual(stats["size"], {"width": 96, "height": 54})
+        self.assertEqual(stats["frames"], 3)
+        self.assertEqual(stats["preset"], "lightcluster")
+        self.assertEqual(stats["recipe"]["select"], "light-clusters")
+        self.assertEqual(stats["recipe"]["cull"], "none")
+        self.assertEqual(stats["recipe"]["settings"]["d_init_m"], 0.25)
+        self.assertEqual(stats["recipe"]["settings"]["face_size_px"], 64)
+        self.assertEqual(stats["counters"]["lights"], LIGHTS)
+        self.assertEqual(stats["image"], "s.png")
+        self.assertGreater(stats["frame_ms"], 0)
+        self.assertEqual(png_size(self.folder / "s.png"), (96, 54))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["s.json", "s.png"])
+
+    def test_counters_fit_together(self):
+        counters = self.stats()["counters"]
+        self.assertEqual(counters["light_clusters"], counters["lights_in_view"])  # per-light
+        self.assertEqual(counters["shadow_views"], 6 * counters["shadow_maps"])  # cubes
+        self.assertEqual(counters["shadow_bytes"] % (counters["shadow_views"] * 64 * 64), 0)
+        self.assertGreater(counters["shadow_triangles"], 0)
+        self.assertLessEqual(counters["shadow_draws"], counters["shadow_triangles"])
+
+    def test_runs_repeat(self):
+        first = self.stats()
+        picture = (self.folder / "s.png").read_bytes()
+        second = self.stats()
+        self.assertEqual(first["counters"], second["counters"])
+        self.assertEqual(picture, (self.folder / "s.png").read_bytes())
+
+    def test_a_smaller_budget_takes_rounds_and_changes_nothing_else(self):
+        whole = self.stats()
+        picture = (self.folder / "s.png").read_bytes()
+        rounds = self.stats("--shadow-budget", 1)
+        self.assertEqual(whole["counters"]["shadow_rounds"], 1)
+        self.assertGreater(rounds["counters"]["shadow_rounds"], 1)
+        self.assertLessEqual(rounds["counters"]["shadow_pool_bytes"], 1 << 20)
+        self.assertEqual(rounds["counters"]["shadow_bytes"], whole["counters"]["shadow_bytes"])
+        self.assertEqual(picture, (self.folder / "s.png").read_bytes())
+
+    def test_exposure_is_a_factor_on_the_shown_picture_only(self):
+        for ev in (-2, 0):
+            for ext in ("png", "pfm"):
+                self.play_well(self.pack, "--output", f"{ev}.{ext}", "--exposure", ev, *SMALL)
+        self.assertNotEqual((self.folder / "-2.png").read_bytes(), (self.folder / "0.png").read_bytes())
+        self.assertEqual((self.folder / "-2.pfm").read_bytes(), (self.folder / "0.pfm").read_bytes())
+        self.assertGreater(read_pfm(self.folder / "0.pfm").mean(), 0)
+
+    def test_ambient_light_adds_radiance(self):
+        for ambient in (0, 1):
+            self.play_well(self.pack, "--output", f"{ambient}.pfm", "--ambient", ambient, *SMALL)
+        self.assertGreater(read_pfm(self.folder / "1.pfm").mean(), read_pfm(self.folder / "0.pfm").mean())
+
+    def test_cameras_by_name_and_by_numbers(self):
+        named = self.stats()["camera"]
+        self.assertNotEqual(named["name"], "")
+        self.assertEqual(self.stats("--camera", named["name"])["camera"], named)
+        numbers = self.stats("--camera", "1,2,3,1,2,-1,60")["camera"]
+        self.assertEqual(numbers["eye_ws"], [1, 2, 3])
+        self.assertEqual(numbers["forward_ws"], [0, 0, -1])
+        self.assertAlmostEqual(numbers["yfov_deg"], 60, 4)
+        self.assert_fails(1, f"the pack has .*{named['name']}.*, none of that name \\(nowhere\\)", self.pack, "--output", "x.png",
+                          "--camera", "nowhere")
+
+    def test_the_validation_layer_is_silent(self):
+        done = self.play_well(self.pack, "--output", "v.png", "--validation", "--preset", "lightcluster", *SMALL)
+        self.assertIn("0 messages from the validation layer", done.stderr)
+
+    def test_devices(self):
+        listed = self.play_well("--list-devices").stdout.splitlines()
+        self.assertGreater(len(listed), 0)
+        device = self.stats()["device"]
+        self.assertTrue(any(device in line for line in listed), listed)
+        self.assertEqual(self.stats("--device", device)["device"], device)
+        self.assert_fails(1, "no-such-device", self.pack, "--output", "x.png", "--device", "no-such-device")
+
+    def test_help_and_version(self):
+        self.assertIn("--preset", self.play_well("--help").stdout)
+        self.assertRegex(self.play_well("--version").stdout, r"chandelier-play \d+\.\d+\.\d+")
+
+
+class BadInput(PlayTest):
+    def bad_pack(self, content):
+        path = self.folder / "bad.chandelier"
+        path.write_bytes(content)
+        self.assert_fails(1, re.escape(str(path)), path, "--output", "x.png", "--stats", "x.json")
+        self.assert_fails(1, re.escape(str(path)), path, "--compare", "reference,lightcluster", "--report", "x")
+
+    def test_packs_that_are_none(self):
+        self.bad_pack(b"")
+        self.bad_pack(b"no pack at all\n" * 1000)
+        self.assert_fails(1, "missing", self.folder / "missing.chandelier", "--output", "x.png")
+        self.assert_fails(1, re.escape(str(self.folder)), self.folder, "--output", "x.png")
+
+    def test_truncated_packs(self):
+        whole = self.pack.read_bytes()
+        for size in (1, 7, 8, 40, 300, len(whole) // 2, len(whole) - 1):
+            with self.subTest(size=size):
+                self.bad_pack(whole[:size])
+
+    def test_altered_packs(self):
+        whole = self.pack.read_bytes()
+        for at in (0, 9, 17, 25, 41, len(whole) // 2, len(whole) - 1):
+            with self.subTest(at=at):
+                self.bad_pack(whole[:at] + bytes([whole[at] ^ 0x55]) + whole[at + 1 :])
+
+    def test_unwritable_output(self):
+        (self.folder / "taken.png").mkdir()
+        self.assert_fails(1, "taken.png: cannot write", self.pack, "--output", "taken.png")
+        self.assert_fails(1, "none/x.png: cannot write", self.pack, "--output", "none/x.png")
+        self.assert_fails(1, "none/x.json: cannot write", self.pack, "--output", "x.png", "--stats", "none/x.json")
+        (self.folder / "file").write_text("in the way")
+        self.assert_fails(1, "file/report: cannot make the folder", self.pack, "--compare", "reference,lightcluster", "--report",
+                          "file/report")
+
+    def test_full_disk(self):
+        done = self.play(self.pack, "--output", "whole.png", "--stats", "/dev/full", *SMALL)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("/dev/full: cannot write (No space left on device)", done.stderr)
+        self.assertEqual(os.listdir(self.folder), ["whole.png"])
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
+    def test_read_only_folder(self):
+        self.folder.chmod(0o555)
+        self.addCleanup(self.folder.chmod, 0o755)
+        self.assert_fails(1, "x.png: cannot write", self.pack, "--output", "x.png")
+
+    def test_usage_errors(self):
+        self.assert_fails(2, "PACK is missing")
+        self.assert_fails(2, "must end in .png", self.pack, "--output", "x.jpg")
+        self.assert_fails(2, "--size", self.pack, "--output", "x.png", "--size", "0x0")
+        self.assert_fails(2, "--bogus", self.pack, "--bogus")
+        self.assert_fails(2, "soft filter", self.pack, "--output", "x.png", "--select", "light-clusters", "--filter", "hard")
+        self.assert_fails(2, "--select", self.pack, "--compare", "reference,lightcluster", "--report", "x", "--select", "per-light")
+
+
+class Links(html.parser.HTMLParser):
+    """Collects what a page links to, and whether its elements nest."""
+
+    VOID = {"meta", "img", "br", "input", "rect", "stop"}
+
+    def __init__(self):
+        super().__init__()
+        self.targets, self.open = [], []
+
+    def handle_starttag(self, tag, attributes):
+        self.targets += [value for name, value in attributes if name in ("src", "href")]
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open.pop() == tag, f"</{tag}> closes something else"
+
+
+class Compare(PlayTest):
+    def compare(self, *arguments, presets="reference,lightcluster"):
+        self.play_well(self.pack, "--compare", presets, "--report", "out/report", "--frames", 2, *SMALL, *arguments)
+        self.report = self.folder / "out/report"
+        comparison = json.loads((self.report / "comparison.json").read_text())
+        schema_validator("comparison.schema.json").validate(comparison)
+        return comparison
+
+    def test_writes_everything_that_the_page_links(self):
+        self.compare()
+        self.assertEqual(sorted(os.listdir(self.report)),
+                         ["comparison.json", "difference.png", "lightcluster.exr", "lightcluster.png", "reference.exr",
+                          "reference.png", "report.html"])
+        self.assertEqual(png_size(self.report / "difference.png"), (96, 54))
+        page = (self.report / "report.html").read_text()
+        links = Links()
+        links.feed(page)
+        self.assertEqual(links.open, [])
+        self.assertEqual({target for target in links.targets if not target.startswith("#")},
+                         {"reference.png", "lightcluster.png", "reference.exr", "lightcluster.exr", "difference.png"})
+
+    def test_agrees_with_single_pictures_at_the_same_exposure(self):
+        comparison = self.compare("--d-init", 0.6)
+        exposure = comparison["a"]["exposure_ev"]
+        self.assertEqual(comparison["b"]["exposure_ev"], exposure)
+        for side in ("reference", "lightcluster"):
+            for ext in ("png", "pfm"):
+                self.play_well(self.pack, "--output", f"{side}.{ext}", "--preset", side, "--exposure", repr(exposure), "--d-init",
+                               0.6, *SMALL)
+            self.assertEqual((self.folder / f"{side}.png").read_bytes(), (self.report / f"{side}.png").read_bytes())
+        error = read_pfm(self.folder / "reference.pfm").astype(float) - read_pfm(self.folder / "lightcluster.pfm")
+        self.assertAlmostEqual(comparison["rmse"]["linear"], numpy.sqrt(numpy.mean(error**2)), 9)
+        self.assertAlmostEqual(comparison["max_error"]["linear"], numpy.abs(error).max(), 9)
+        self.assertGreater(comparison["rmse"]["linear"], 0)
+        self.assertLess(comparison["b"]["counters"]["shadow_maps"], comparison["a"]["counters"]["shadow_maps"])
+
+    def test_light_clusters_of_one_light_each_are_the_reference(self):
+        comparison = self.compare("--d-init", 0, "--filter", "hard")
+        self.assertEqual(comparison["rmse"], {"linear": 0, "shown": 0})
+        self.assertEqual(comparison["max_error"], {"linear": 0, "shown": 0})
+        self.assertEqual(comparison["a"]["counters"], comparison["b"]["counters"])
+
+    def test_a_preset_against_itself(self):
+        comparison = self.compare(presets="reference,reference")
+        self.assertEqual(comparison["rmse"], {"linear": 0, "shown": 0})
+        self.assertNotEqual(comparison["a"]["image"], comparison["b"]["image"])
+        for side in "ab":
+            self.assertTrue((self.report / comparison[side]["image"]).exists())
+
+
+class Window(PlayTest):
+    @classmethod
+    def setUpClass(cls):
+        if not shutil.which("Xvfb"):
+            raise unittest.SkipTest("Xvfb is not installed")
+        super().setUpClass()
+        reading, writing = os.pipe()
+        cls.server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "320x240x24", "-nolisten", "tcp",
+                                       "-noreset"],
+                                      pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        cls.addClassCleanup(cls.stop_server)
+        os.close(writing)
+        assert select.select([reading], [], [], PATIENCE_S)[0], "Xvfb did not start"
+        with os.fdopen(reading) as number:  # to the end of the line: a closed pipe would end the server
+            cls.env = {**os.environ, "DISPLAY": ":" + number.readline().strip()}
+
+    @classmethod
+    def stop_server(cls):
+        cls.server.terminate()
+        cls.server.wait()
+
+    def screen(self):
+        raw = subprocess.run(["import", "-window", "root", "-depth", "8", "rgb:-"], env=self.env, check=True,
+                             stdout=subprocess.PIPE).stdout
+        return numpy.frombuffer(raw, numpy.uint8).reshape(240, 320, 3)
+
+    def test_closes_after_the_frames_asked_for(self):
+        done = self.play(self.pack, "--frames", 3, "--validation", *SMALL, env=self.env)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("0 messages from the validation layer", done.stderr)
+
+    @unittest.skipUnless(shutil.which("import") and shutil.which("convert"), "ImageMagick is not installed")
+    def test_shows_the_picture_until_a_signal(self):
+        self.play_well(self.pack, "--output", "frame.png", *SMALL)
+        raw = subprocess.run(["convert", self.folder / "frame.png", "-depth", "8", "rgb:-"], check=True,
+                             stdout=subprocess.PIPE).stdout
+        wanted = numpy.frombuffer(raw, numpy.uint8).reshape(54, 96, 3)
+        window = subprocess.Popen([PLAY, self.pack, *SMALL], env=self.env, stderr=subprocess.PIPE, text=True)
+        try:
+            patience = time.monotonic() + PATIENCE_S
+            while not numpy.array_equal(self.screen()[:54, :96], wanted) and time.monotonic() < patience:
+                self.assertIsNone(window.poll(), "the window closed by itself")
+                time.sleep(0.1)
+            shown = self.screen()
+            numpy.testing.assert_array_equal(shown[:54, :96], wanted)
+            self.assertEqual(shown[54:].max(), 0)
+        finally:
+            window.send_signal(signal.SIGTERM)
+            _, said = window.communicate(timeout=PATIENCE_S)
+        self.assertEqual(window.returncode, 0, said)
+
+    def test_without_a_display_there_is_a_hint(self):
+        blind = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        self.assert_fails(1, "no display: use --output FILE.png", self.pack, env=blind)
+
+
+if __name__ == "__main__":
+    result = unittest.main(exit=False, verbosity=2).result
+    if not result.wasSuccessful():
+        sys.exit(1)
+    sys.exit(SKIPPED if len(result.skipped) > 0 and result.testsRun <= len(result.skipped) else 0)
