@@ -201,8 +201,8 @@ void Renderer::Impl::record_round(VkCommandBuffer cmd, const Recipe& recipe, con
                 .lights = lights.device,
                 .maps = maps.device,
                 .views = views.device,
-                .first_light = round.first_light,
-                .light_count = round.light_count},
+                .first_map = round.first_map,
+                .map_count = round.map_count},
                store, targets);
   timers.end(cmd);
 }

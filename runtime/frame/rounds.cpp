@@ -10,11 +10,10 @@ std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& 
     frame::ShadowMap& map = list.maps[m];
     const bool full = !rounds.empty() && (rounds.back().map_count == cubes ||
                                           uint64_t{rounds.back().view_count} + map.view_count > max_views);
-    if (rounds.empty() || full) rounds.push_back({m, 0, map.first_view, 0, list.first_light[m], 0});
+    if (rounds.empty() || full) rounds.push_back({m, 0, map.first_view, 0});
     Round& round = rounds.back();
     map.cube = round.map_count++;
     round.view_count += map.view_count;
-    round.light_count = list.first_light[m + 1] - round.first_light;
     for (uint32_t v = map.first_view; v < map.first_view + map.view_count; ++v) views[v].layer += 6 * map.cube;
   }
   return rounds;

@@ -14,8 +14,6 @@ struct Round {
   uint32_t map_count;
   uint32_t first_view;
   uint32_t view_count;
-  uint32_t first_light;
-  uint32_t light_count;
 };
 
 /// Splits the maps into rounds of at most `cubes` maps and `max_views` views (a single map may exceed the latter), and

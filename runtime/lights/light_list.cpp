@@ -23,7 +23,7 @@ std::vector<uint32_t> lights_in_view(std::span<const pack::Light> lights, const 
   return in_view;
 }
 
-frame::FrameLight frame_light(const pack::Light& light, uint32_t shadow_map) {
+frame::FrameLight frame_light(const pack::Light& light) {
   // KHR_lights_punctual, spot lights: the cone's falloff as one multiply and add.
   const bool spot = light.type == pack::LightType::spot;
   const float scale = spot ? 1.0f / std::max(0.001f, light.inner_cone_cos - light.outer_cone_cos) : 0.0f;
@@ -32,7 +32,6 @@ frame::FrameLight frame_light(const pack::Light& light, uint32_t shadow_map) {
           .direction_ws = light.direction_ws,
           .type = static_cast<uint32_t>(light.type),
           .radiant = light.color * light.intensity,
-          .shadow_map = shadow_map,
           .cone_scale = scale,
           .cone_offset = spot ? -light.outer_cone_cos * scale : 1.0f};
 }
@@ -90,16 +89,16 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
   for (size_t i = 0; i < members.size(); ++i) {
     const Member& member = members[i];
     if (i == 0 || members[i - 1].center != member.center) {
-      list.first_light.push_back(static_cast<uint32_t>(i));
       list.maps.push_back({.center_ws = lights[member.center].position_ws,
                            .range_m = member.map_range_m,
                            .filter_radius_m = member.filter_radius_m,
+                           .first_light = static_cast<uint32_t>(i),
                            .is_directional = is_directional(lights[member.center])});
     }
-    list.lights.push_back(frame_light(lights[member.light], static_cast<uint32_t>(list.maps.size() - 1)));
+    list.lights.push_back(frame_light(lights[member.light]));
+    ++list.maps.back().light_count;
     list.pack_light.push_back(member.light);
   }
-  list.first_light.push_back(static_cast<uint32_t>(members.size()));
   return list;
 }
 

@@ -17,7 +17,6 @@ namespace chandelier {
 struct LightList {
   std::vector<frame::FrameLight> lights;
   std::vector<frame::ShadowMap> maps;  // cube, first_view and view_count are still open
-  std::vector<uint32_t> first_light;   // of each map, and one past the last
   std::vector<uint32_t> pack_light;    // number in the pack, of each of `lights`
 };
 

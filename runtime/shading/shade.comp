@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds the light of one round's FrameLights to the picture. Lookup `all`: every light is tested against every pixel;
-// delivery `inline`: visibility is read here, once per shadow map and pixel, by all the lights that share the map.
+// Adds the light of one round's ShadowMaps to the picture. Lookup `all`: every light is tested against every pixel;
+// delivery `inline`: visibility is read here, once per shadow map and pixel, for all the lights that share the map.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
@@ -58,25 +58,32 @@ vec3 world_position(ivec2 pixel, float depth) {
   return p.xyz / p.w;
 }
 
+// The light of one map's lights at p, before visibility.
+vec3 unshadowed(ShadowMap map, Surface s, vec3 p, vec3 to_eye) {
+  vec3 sum = vec3(0.0);
+  uint i = map.first_light;
+  do {
+    Incoming light_in = incoming(lights[i], p);
+    float n_dot_l = dot(s.normal, light_in.to_light);
+    bool reaches = largest(light_in.illuminance) > 0.0 && n_dot_l > 0.0 && dot(s.geometric_normal, light_in.to_light) > 0.0;
+    if (reaches) sum += light_in.illuminance * n_dot_l * reflected(s, to_eye, light_in.to_light, n_dot_l);
+  } while (++i < map.first_light + map.light_count);
+  return sum;
+}
+
+// Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked.
 vec3 lit_by_round(Surface s, vec3 p, vec2 pixel) {
   vec3 to_eye = normalize(view.eye_ws - p);
   vec3 sum = vec3(0.0);
-  uint known_map = NONE;
-  float known_visibility = 0.0;
-  uint end = round.first_light + round.light_count;
-  for (uint i = round.first_light; i < end; ++i) {
-    FrameLight light = lights[i];
-    Incoming light_in = incoming(light, p);
-    float n_dot_l = dot(s.normal, light_in.to_light);
-    bool reaches = largest(light_in.illuminance) > 0.0 && n_dot_l > 0.0 && dot(s.geometric_normal, light_in.to_light) > 0.0;
-    if (!reaches) continue;
-    if (known_map != light.shadow_map) {
-      known_map = light.shadow_map;
-      known_visibility = visibility(maps[known_map], p, s.geometric_normal, pixel);
+  uint i = round.first_map;
+  do {
+    ShadowMap map = maps[i];
+    bool in_range = map.is_directional != 0u || distance(p, map.center_ws) < map.range_m;  // LightCluster §3.2.2: C_att
+    if (in_range) {
+      vec3 light = unshadowed(map, s, p, to_eye);
+      if (largest(light) > 0.0) sum += visibility(map, p, s.geometric_normal, pixel) * light;
     }
-    if (known_visibility > 0.0)
-      sum += light_in.illuminance * (known_visibility * n_dot_l) * reflected(s, to_eye, light_in.to_light, n_dot_l);
-  }
+  } while (++i < round.first_map + round.map_count);
   return sum;
 }
 
@@ -84,7 +91,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(vec2(pixel), view.size_px))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
-  if (depth == 0.0 || round.light_count == 0u) return;
+  if (depth == 0.0 || round.map_count == 0u) return;
   Surface s = unpack_surface(texelFetch(surface_image, pixel, 0));
   vec3 p = world_position(pixel, depth);
   vec4 radiance = imageLoad(radiance_image, pixel);

@@ -55,8 +55,7 @@ void record_shade(VkCommandBuffer cmd, const ShadePipelines& pipelines, const Re
              gpu::sampled(targets.surface.view, pipelines.texel_sampler),
              gpu::sampled(targets.depth.view, pipelines.texel_sampler), gpu::sampled(store.cubes, compare),
              gpu::sampled(store.depth.view, compare), gpu::storage_image(targets.radiance)});
-  gpu::push_constants(cmd, pipeline,
-                      frame::ShadeConstants{.first_light = input.first_light, .light_count = input.light_count});
+  gpu::push_constants(cmd, pipeline, frame::ShadeConstants{.first_map = input.first_map, .map_count = input.map_count});
   vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
 }
 

@@ -22,8 +22,8 @@ struct ShadeInput {
   const gpu::Buffer& lights;  // frame FrameLight
   const gpu::Buffer& maps;    // frame ShadowMap
   const gpu::Buffer& views;   // frame ShadowView
-  uint32_t first_light;
-  uint32_t light_count;
+  uint32_t first_map;
+  uint32_t map_count;
 };
 void record_shade(VkCommandBuffer cmd, const ShadePipelines& pipelines, const Recipe& recipe, const ShadeInput& input,
                   const CubeArray& store, const Targets& targets);

@@ -36,13 +36,11 @@ bool cone_touches(const CubeFace& face, const frame::FrameLight& light) {
 }
 
 void project_cube(const LightList& list, uint32_t map_number, float texel_m, std::vector<frame::ShadowView>& views) {
-  const uint32_t first = list.first_light[map_number];
-  const frame::FrameLight& light = list.lights[first];
-  const bool lone_spot =
-      list.first_light[map_number + 1] == first + 1 && light.type == static_cast<uint32_t>(pack::LightType::spot);
+  const frame::ShadowMap& map = list.maps[map_number];
+  const frame::FrameLight& light = list.lights[map.first_light];
+  const bool lone_spot = map.light_count == 1 && light.type == static_cast<uint32_t>(pack::LightType::spot);
   for (uint32_t face = 0; face < 6; ++face)
-    if (!lone_spot || cone_touches(cube_face(face), light))
-      views.push_back(cube_view(list.maps[map_number], map_number, face, texel_m));
+    if (!lone_spot || cone_touches(cube_face(face), light)) views.push_back(cube_view(map, map_number, face, texel_m));
 }
 
 std::array<glm::vec3, 8> corners(const Bounds& b) {
@@ -113,7 +111,7 @@ frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction,
 
 void project_cascades(const LightList& list, uint32_t map_number, const Camera& camera, float aspect,
                       const Bounds& bounds, uint32_t face_size_px, std::vector<frame::ShadowView>& views) {
-  const glm::vec3 direction = list.lights[list.first_light[map_number]].direction_ws;
+  const glm::vec3 direction = list.lights[list.maps[map_number].first_light].direction_ws;
   const auto splits = split_depths(camera, bounds);
   for (uint32_t i = 0; i < frame::cascade_count; ++i)
     views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), direction, bounds, map_number,
