@@ -29,16 +29,17 @@ function(chandelier_shaders target)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/shaders)
   foreach(source ${ARGN})
     get_filename_component(name ${source} NAME)
+    get_filename_component(path ${source} ABSOLUTE)
     string(REPLACE "." "_" symbol ${name})
     set(header ${out}/${symbol}.h)
     add_custom_command(
       OUTPUT ${header}
       COMMAND ${CMAKE_COMMAND} -E make_directory ${out}
       COMMAND ${GLSLANG} --quiet -V --target-env vulkan1.3 -I${CMAKE_SOURCE_DIR}/runtime -I${CMAKE_BINARY_DIR}/generated
-              --depfile ${header}.d --vn ${symbol} -o ${header} ${CMAKE_CURRENT_SOURCE_DIR}/${source}
-      DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${source} chandelier_generated
+              --depfile ${header}.d --vn ${symbol} -o ${header} ${path}
+      DEPENDS ${path} chandelier_generated
       DEPFILE ${header}.d
-      COMMENT "Shader ${source}"
+      COMMENT "Shader ${name}"
       VERBATIM)
     target_sources(${target} PRIVATE ${header})
   endforeach()
