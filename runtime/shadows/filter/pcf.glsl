@@ -42,8 +42,9 @@ float pcf_visibility(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
     for (uint i = 0u; i < POISSON_TAPS; ++i) lit += cascade_lit(cascade, p + axes * POISSON_DISC[i]);
   } else {
     axes *= pcf_radius(map, p);
-    p = offset_from_surface(map, p, n, texels);
-    for (uint i = 0u; i < POISSON_TAPS; ++i) lit += cube_lit(map, p + axes * POISSON_DISC[i]);
+    // Each tap by itself: it may fall on another face, at another slope, than p does.
+    for (uint i = 0u; i < POISSON_TAPS; ++i)
+      lit += cube_lit(map, offset_from_surface(map, p + axes * POISSON_DISC[i], n, texels));
   }
   return lit / float(POISSON_TAPS);
 }

@@ -10,10 +10,12 @@ const float DEPTH_ROUNDING = 1e-4;
 
 float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 
-// The part of n along the axis of the cube face that d falls on.
-float along_major_axis(vec3 d, vec3 n) {
+// The part of n along the axis of the cube face that d falls on; where d is within `reach` of other faces, the least part
+// along any of their axes.
+float along_major_axis(vec3 d, vec3 n, float reach) {
   vec3 a = abs(d);
-  return a.x >= a.y && a.x >= a.z ? n.x : (a.y >= a.z ? n.y : n.z);
+  vec3 along = mix(vec3(1.0), abs(n), greaterThanEqual(a + reach, vec3(largest(a))));
+  return min(along.x, min(along.y, along.z));
 }
 
 // Width of a texel of the map at p, metres. For a cube it grows with the distance along the face's axis.
@@ -24,8 +26,9 @@ float texel_size(ShadowMap map, vec3 p) {
 // Moves a point off its surface so far that its own plane, sampled `texels` away, cannot shadow it. A plane's depth changes
 // within a face by at most texels * texel_size * tan(slope against the face), which this displacement along n makes up for.
 vec3 offset_from_surface(ShadowMap map, vec3 p, vec3 n, float texels) {
-  float across = along_major_axis(p - map.center_ws, n);
-  return p + n * (texels * texel_size(map, p) * sqrt(max(0.0, 1.0 - across * across)));
+  float reach = texels * texel_size(map, p);
+  float across = along_major_axis(p - map.center_ws, n, reach);
+  return p + n * (reach * sqrt(max(0.0, 1.0 - across * across)));
 }
 
 // Is p lit, seen from the centre of a cube?
