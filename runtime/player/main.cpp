@@ -60,7 +60,9 @@ int run(const Options& options) {
   if (options.mode == Mode::headless) run_headless(options, camera, device, renderer);
   if (options.mode == Mode::compare) run_comparison(options, camera, device, renderer);
 #ifndef CHANDELIER_PORTABLE
-  if (window) window->run(options, camera, device, renderer);
+  const pack::BakeInfo& info = *pack.view().bake_info;
+  const float scene_size_m = glm::distance(info.bounds_min_ws, info.bounds_max_ws);
+  if (window) window->run(options, camera, scene_size_m, device, renderer);
 #endif
   return report_validation(options, device);
 }

@@ -18,7 +18,9 @@
 namespace chandelier::player {
 namespace {
 
-constexpr float kSpeed_m_per_s = 3.0f;
+constexpr float kCrossing_s = 10.0f;  // from one end of the scene to the other
+constexpr float kSlowest_m_per_s = 0.02f;
+constexpr float kFastest_m_per_s = 500.0f;
 constexpr float kFast = 4.0f;  // with Shift
 constexpr float kTurn_rad_per_px = 0.003f;
 constexpr float kLongestStep_s = 0.25f;  // a slow device must not throw the camera through a wall
@@ -37,7 +39,7 @@ VkExtent2D framebuffer_size(GLFWwindow* window) {
 
 struct Window::Impl {
   GLFWwindow* window = nullptr;
-  float speed_m_per_s = kSpeed_m_per_s;
+  float speed_m_per_s = 1.0f;
   bool looking = false;
   bool captured = false;
   double cursor_x = 0.0;
@@ -56,7 +58,7 @@ struct Window::Impl {
   }
   static void on_scroll(GLFWwindow* window, double, double y) {
     float& speed = of(window).speed_m_per_s;
-    speed = std::clamp(speed * (y > 0.0 ? 1.25f : 0.8f), 0.05f, 500.0f);
+    speed = std::clamp(speed * (y > 0.0 ? 1.25f : 0.8f), kSlowest_m_per_s, kFastest_m_per_s);
   }
 
   void look(Camera& camera) {
@@ -101,6 +103,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   if (impl_->window == nullptr)
     throw std::runtime_error(fmt::format("no window: use --output FILE.png ({})", glfw_error));
   glfwSetWindowUserPointer(impl_->window, impl_.get());
+  glfwSetInputMode(impl_->window, GLFW_STICKY_KEYS, GLFW_TRUE);  // a press shorter than a frame still counts
   glfwSetKeyCallback(impl_->window, &Impl::on_key);
   glfwSetScrollCallback(impl_->window, &Impl::on_scroll);
 }
@@ -113,11 +116,13 @@ std::vector<const char*> Window::instance_extensions() const {
   return {names, names + count};
 }
 
-void Window::run(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer) {
+void Window::run(const Options& options, const NamedCamera& camera, float scene_size_m, const gpu::Device& device,
+                 Renderer& renderer) {
   GLFWwindow* const window = impl_->window;
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   gpu::check(glfwCreateWindowSurface(device.instance, window, nullptr, &surface), "glfwCreateWindowSurface");
   Swapchain swapchain(device, surface);
+  impl_->speed_m_per_s = std::clamp(scene_size_m / kCrossing_s, kSlowest_m_per_s, kFastest_m_per_s);
   std::signal(SIGINT, [](int) { asked_to_end = 1; });
   std::signal(SIGTERM, [](int) { asked_to_end = 1; });
 

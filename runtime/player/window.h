@@ -20,8 +20,10 @@ class Window {
 
   /// What the Vulkan instance must have to show pictures here.
   std::vector<const char*> instance_extensions() const;
-  /// Draws until the window is closed, Esc is pressed, a signal asks to end, or options.frames are drawn. Throws.
-  void run(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer);
+  /// Draws until the window is closed, Esc is pressed, a signal asks to end, or options.frames are drawn. The camera
+  /// flies through a scene of `scene_size_m` in ten seconds. Throws.
+  void run(const Options& options, const NamedCamera& camera, float scene_size_m, const gpu::Device& device,
+           Renderer& renderer);
 
  private:
   struct Impl;
