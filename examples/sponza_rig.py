@@ -3,7 +3,8 @@
 """80 lights and three cameras, and no meshes, for Crytek's Sponza as Khronos gives it (metres, court along x).
 
 Bake both together: `chandelier-bake crytek_sponza.gltf rig.glb -o sponza.chandelier`. Ten circles of eight hang in the
-ground floor's aisles, one in each bay of the arcades, between the columns (z = -2.4 and 1.9) and the walls (-6.3 and 5.8).
+court, one before each arch of the two arcades: from there they light court and banners, and columns and curtains throw
+their shadows into the aisles.
 """
 
 import math
@@ -13,18 +14,18 @@ import numpy as np
 from gltf_writer import Document, main
 
 BAYS_X = (-8.2, -4.2, -0.4, 3.5, 7.3)
-AISLES_Z = (-4.45, 3.85)
-LAMP_Y = 2.6
+ROWS_Z = (-1.75, 1.25)
+LAMP_Y = 3.4
 CIRCLE_RADIUS = 0.44
 RANGE_M = 7.0
 CAMERAS = {"hall": ((-11.2, 1.7, -0.25), (0.0, 2.3, -0.25), 60.0),
            "arcade": ((-12.4, 1.7, -4.3), (0.0, 2.0, -4.3), 60.0),
-           "gallery": ((-11.0, 6.2, -3.9), (1.0, 1.5, 1.0), 65.0)}
+           "gallery": ((-9.6, 6.3, -0.25), (1.0, 2.6, -0.25), 65.0)}
 
 
 def light_positions():
     return [(x + CIRCLE_RADIUS * math.cos(k * math.pi / 4), LAMP_Y, z + CIRCLE_RADIUS * math.sin(k * math.pi / 4))
-            for z in AISLES_Z for x in BAYS_X for k in range(8)]
+            for z in ROWS_Z for x in BAYS_X for k in range(8)]
 
 
 def make():
