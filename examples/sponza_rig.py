@@ -14,18 +14,27 @@ import numpy as np
 from gltf_writer import Document, main
 
 BAYS_X = (-8.2, -4.2, -0.4, 3.5, 7.3)
-ROWS_Z = (-1.75, 1.25)
-LAMP_Y = 3.4
+HALL = (3.1, (-1.45, 1.0))  # height and z of the circles in front of the arches
+AISLE = (2.6, (-4.45, 3.85))  # and of those behind the curtains
 CIRCLE_RADIUS = 0.44
 RANGE_M = 7.0
 CAMERAS = {"hall": ((-11.2, 1.7, -0.25), (0.0, 2.3, -0.25), 60.0),
-           "arcade": ((-12.4, 1.7, -4.3), (0.0, 2.0, -4.3), 60.0),
-           "gallery": ((-9.6, 6.3, -0.25), (1.0, 2.6, -0.25), 65.0)}
+           "arcade": ((-11.3, 1.7, -4.9), (0.0, 1.9, -4.0), 60.0),
+           "gallery": ((-8.2, 6.6, -2.5), (1.5, 1.0, 1.2), 65.0)}
+
+
+def circle_centers():
+    centers = []
+    for side in (0, 1):
+        for bay, x in enumerate(BAYS_X):
+            y, z = AISLE if bay % 2 else HALL
+            centers.append((x, y, z[side]))
+    return centers
 
 
 def light_positions():
-    return [(x + CIRCLE_RADIUS * math.cos(k * math.pi / 4), LAMP_Y, z + CIRCLE_RADIUS * math.sin(k * math.pi / 4))
-            for z in ROWS_Z for x in BAYS_X for k in range(8)]
+    return [(x + CIRCLE_RADIUS * math.cos(k * math.pi / 4), y, z + CIRCLE_RADIUS * math.sin(k * math.pi / 4))
+            for x, y, z in circle_centers() for k in range(8)]
 
 
 def make():
