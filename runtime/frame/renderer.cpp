@@ -301,18 +301,18 @@ Picture Renderer::read_back() {
   gpu::run_once(impl_->device, [&](VkCommandBuffer cmd) {
     VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                            .imageExtent = {targets.width, targets.height, 1}};
-    vkCmdCopyImageToBuffer(cmd, targets.shown.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle, 1, &copy);
     gpu::image_barrier(cmd, targets.radiance, use::storage, use::copied);
-    copy.bufferOffset = pixels * 4;
     vkCmdCopyImageToBuffer(cmd, targets.radiance.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle, 1, &copy);
     gpu::image_barrier(cmd, targets.radiance, use::copied, use::storage);
+    copy.bufferOffset = pixels * 16;  // behind, because an offset must be a multiple of the texel's size
+    vkCmdCopyImageToBuffer(cmd, targets.shown.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle, 1, &copy);
     gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                         VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
   });
   picture.shown.resize(pixels * 4);
   picture.radiance.resize(pixels * 4);
-  std::memcpy(picture.shown.data(), buffer.mapped, pixels * 4);
-  std::memcpy(picture.radiance.data(), buffer.mapped + pixels * 4, pixels * 16);
+  std::memcpy(picture.radiance.data(), buffer.mapped, pixels * 16);
+  std::memcpy(picture.shown.data(), buffer.mapped + pixels * 16, pixels * 4);
   return picture;
 }
 
