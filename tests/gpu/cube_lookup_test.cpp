@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lookups in cube shadow maps, drawn by the runtime's own stages, agree with rays that Embree traces.
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <iostream>
+#include <random>
+
+#include "frame/rounds.h"
+#include "frame/targets.h"
+#include "gpu_test.h"
+#include "shaders/lookup_comp.h"
+#include "shadows/cull/cull.h"
+#include "shadows/project/shadow_views.h"
+#include "shadows/raster/caster_pass.h"
+
+namespace chandelier::test {
+namespace {
+
+constexpr float room_m = 5.0f;  // half of it
+constexpr uint32_t lookups = 40000;
+
+using Random = std::mt19937;
+
+float uniform(Random& random, float from, float to) {
+  return from + (to - from) * static_cast<float>(random() >> 8) * 0x1p-24f;
+}
+glm::vec3 uniform3(Random& random, float from, float to) {
+  const float x = uniform(random, from, to), y = uniform(random, from, to);
+  return {x, y, uniform(random, from, to)};
+}
+glm::vec3 unit_vector(Random& random) {
+  glm::vec3 v;
+  do v = uniform3(random, -1.0f, 1.0f);
+  while (glm::dot(v, v) > 1.0f || glm::dot(v, v) < 0.01f);
+  return glm::normalize(v);
+}
+
+// A room with 400 boxes and spheres: turned, stretched, some mirrored, some reaching into each other.
+Scene cluttered_room(Random& random) {
+  Scene scene;
+  const uint32_t material = scene.add_material(plain_material(glm::vec3(0.5f)));
+  scene.add(box(glm::vec3(-room_m), glm::vec3(room_m)), material);
+  const Mesh unit_box = box(glm::vec3(-0.5f), glm::vec3(0.5f));
+  const Mesh ball = sphere(glm::vec3(0.0f), 0.5f, 16);
+  for (uint32_t i = 0; i < 400; ++i) {
+    glm::mat4 place = glm::translate(glm::mat4(1.0f), uniform3(random, -room_m, room_m));
+    place = glm::rotate(place, uniform(random, 0, 6.0f), unit_vector(random));
+    glm::vec3 scale = uniform3(random, 0.15f, 0.7f);
+    if (i % 5 == 0) scale.x = -scale.x;
+    scene.add(i % 2 ? ball : unit_box, material, glm::scale(place, scale));
+  }
+  for (uint32_t i = 0; i < 12; ++i)
+    scene.lights.push_back(point_light(uniform3(random, -4.5f, 4.5f), 10, uniform(random, 4, 9)));
+  return scene;
+}
+
+class RayScene {
+ public:
+  explicit RayScene(const std::vector<std::array<glm::vec3, 3>>& triangles)
+      : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* corners = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), triangles.size() * 3));
+    auto* indices = static_cast<uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
+    for (size_t i = 0; i < triangles.size() * 3; ++i) {
+      corners[i] = triangles[i / 3][i % 3];
+      indices[i] = static_cast<uint32_t>(i);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+  ~RayScene() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  bool blocked(const glm::vec3& from, const glm::vec3& to) const {
+    const glm::vec3 d = to - from;
+    RTCRay ray{from.x, from.y, from.z, 0.0f, d.x, d.y, d.z, 0.0f, 1.0f, ~0u, 0, 0};
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene_, &context, &ray);
+    return ray.tfar < 0.0f;
+  }
+
+ private:
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+// As lookup.comp has it, scalar layout.
+struct Question {
+  glm::vec3 p;
+  uint32_t map;
+  glm::vec3 n;
+};
+static_assert(sizeof(Question) == 28);
+
+// Half on surfaces, evenly by area, half anywhere in the room; with a normal that looks towards the light, within
+// range.
+std::vector<Question> ask(Random& random, const std::vector<std::array<glm::vec3, 3>>& triangles,
+                          const std::vector<frame::ShadowMap>& maps) {
+  std::vector<float> area_up_to;
+  float area = 0.0f;
+  for (const auto& t : triangles) area_up_to.push_back(area += glm::length(glm::cross(t[1] - t[0], t[2] - t[0])));
+  std::vector<Question> questions;
+  while (questions.size() < lookups) {
+    Question q;
+    q.map = static_cast<uint32_t>(random() % maps.size());
+    if (questions.size() % 2) {
+      const auto found = std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, uniform(random, 0, area));
+      const auto& t = triangles[static_cast<size_t>(found - area_up_to.begin())];
+      float u = uniform(random, 0, 1), v = uniform(random, 0, 1);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      q.p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+      q.n = glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
+    } else {
+      q.p = uniform3(random, -room_m, room_m);
+      q.n = unit_vector(random);
+    }
+    const glm::vec3 d = maps[q.map].center_ws - q.p;
+    if (glm::dot(q.n, d) < 0.0f) q.n = -q.n;
+    if (glm::length(d) < maps[q.map].range_m && glm::length(d) > 0.2f) questions.push_back(q);
+  }
+  return questions;
+}
+
+// What rays say of a lookup, and whether it lies in the band in which a map of this resolution may be wrong. A lookup
+// is outside the band where ten rays agree: from the point, and from the four points of its tangent plane that lie one
+// texel away from it diagonally as the light sees them, each raised off that plane by next to nothing and by a whole
+// texel.
+enum class Truth { lit, dark, band };
+Truth truth(const RayScene& rays, const Question& q, const glm::vec3& light, uint32_t face_size_px) {
+  const glm::vec3 d = q.p - light;
+  const int axis = std::abs(d.x) >= std::abs(d.y) && std::abs(d.x) >= std::abs(d.z) ? 0
+                   : std::abs(d.y) >= std::abs(d.z)                                 ? 1
+                                                                                    : 2;
+  const float depth = std::abs(d[axis]);
+  const float texel_m = 2.0f * depth / static_cast<float>(face_size_px);
+  uint32_t lit = 0, dark = 0;
+  for (int corner = 0; corner < 5; ++corner) {
+    glm::vec3 toward = d;
+    if (corner < 4) {
+      toward[(axis + 1) % 3] += corner & 1 ? texel_m : -texel_m;
+      toward[(axis + 2) % 3] += corner & 2 ? texel_m : -texel_m;
+    }
+    const float along = glm::dot(q.n, d) / glm::dot(q.n, toward);  // where that way meets the tangent plane
+    if (!(along > 0.5f && along < 2.0f)) return Truth::band;
+    for (const float lift_m : {1e-4f, texel_m})
+      ++(rays.blocked(light + toward * along + q.n * lift_m, light) ? dark : lit);
+  }
+  return dark == 0 ? Truth::lit : (lit == 0 ? Truth::dark : Truth::band);
+}
+
+// The maps of a scene's lights and what lookup.comp needs to read them.
+struct Maps {
+  LightList list;
+  std::vector<frame::ShadowView> views;
+  CubeArray store;
+};
+
+class CubeLookupTest : public GpuTest {
+ protected:
+  template <typename T>
+  gpu::Buffer upload(const std::vector<T>& records) {
+    return gpu::upload_buffer(device(), std::as_bytes(std::span(records)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  }
+
+  // Runs select, project, cull and rasterize as a frame does, all maps in one round.
+  Maps draw_maps(const pack::File& pack, uint32_t face_size_px) {
+    const GpuScene scene = upload_scene(device(), pack);
+    const Camera camera = look({0, 0, 40}, {0, 0, 0}, 1.0f);  // sees the whole room
+    Maps maps;
+    maps.list = select_lights(scene.lights, {}, camera, 1.0f);
+    maps.views = project_lights(maps.list, camera, 1.0f, scene.bounds, face_size_px);
+    const auto count = static_cast<uint32_t>(maps.list.maps.size());
+    const auto rounds = plan_rounds(maps.list, maps.views, count, 1u << 20);
+    EXPECT_EQ(rounds.size(), 1u);
+    const auto view_count = static_cast<uint32_t>(maps.views.size());
+    maps.store = make_cube_array(device(), face_size_px, count);
+
+    const CullPipelines cull = make_cull_pipelines(device());
+    const CasterPipelines casters = make_caster_pipelines(device(), scene);
+    const DrawLists draws = make_draw_lists(device(), scene, uint64_t{scene.batch_instance_count} * view_count);
+    const gpu::Buffer views = upload(maps.views);
+    const gpu::Buffer counters = upload(std::vector<frame::CullCounters>(1));
+    gpu::run_once(device(), [&](VkCommandBuffer cmd) {
+      record_cull(cmd, device(), cull.light_frustum, scene,
+                  {.views = views,
+                   .counters = counters,
+                   .first_view = 0,
+                   .view_count = view_count,
+                   .merged_runs = std::max(1u, scene.opaque_runs),
+                   .round = 0},
+                  draws);
+      record_casters(cmd, casters, scene, draws, views, view_count, maps.store, count);
+    });
+    return maps;
+  }
+
+  std::vector<float> answers(const Maps& maps, const std::vector<Question>& questions) {
+    constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    constexpr auto image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    const auto pipeline = gpu::make_compute_pipeline(
+        device(), {.bindings = {buffer, buffer, buffer, buffer, buffer, image, image}, .more_sets = {}}, lookup_comp);
+    const auto nearest = gpu::make_sampler(device(), {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                                      .compareEnable = VK_TRUE,
+                                                      .compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL});
+    const gpu::Buffer view =
+        upload(std::vector<frame::ViewConstants>{{.face_size_px = static_cast<float>(maps.store.face_size_px)}});
+    const gpu::Buffer map_buffer = upload(maps.list.maps), views = upload(maps.views), asked = upload(questions);
+    const gpu::Buffer out =
+        gpu::make_buffer(device(), questions.size() * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::readback);
+    gpu::run_once(device(), [&](VkCommandBuffer cmd) {
+      gpu::bind(
+          cmd, pipeline,
+          {gpu::storage(view), gpu::storage(map_buffer), gpu::storage(views), gpu::storage(asked), gpu::storage(out),
+           gpu::sampled(maps.store.cubes, nearest), gpu::sampled(maps.store.depth.view, nearest)});
+      gpu::dispatch(cmd, device(), questions.size(), 64);
+      gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+    });
+    const auto* values = reinterpret_cast<const float*>(out.mapped);
+    return {values, values + questions.size()};
+  }
+
+  void expect_agreement(uint32_t face_size_px, uint32_t seed) {
+    Random random(seed);
+    const pack::File pack = cluttered_room(random).open();
+    const auto triangles = world_triangles(pack.view());
+    const Maps maps = draw_maps(pack, face_size_px);
+    const auto questions = ask(random, triangles, maps.list.maps);
+    const auto found = answers(maps, questions);
+    const RayScene rays(triangles);
+    uint32_t lit = 0, dark = 0, band = 0, wrong = 0;
+    for (size_t i = 0; i < questions.size(); ++i) {
+      const Truth expected = truth(rays, questions[i], maps.list.maps[questions[i].map].center_ws, face_size_px);
+      lit += expected == Truth::lit;
+      dark += expected == Truth::dark;
+      band += expected == Truth::band;
+      wrong += expected != Truth::band && found[i] != (expected == Truth::lit ? 1.0f : 0.0f);
+    }
+    const double agreement = 1.0 - double{1.0} * wrong / (lit + dark);
+    std::cout << face_size_px << " texels: " << 100.0 * agreement << " % of " << lit + dark << " lookups agree (" << lit
+              << " lit, " << dark << " dark, " << wrong << " wrong), " << band << " in the band\n";
+    RecordProperty("agreement", std::to_string(agreement));
+    EXPECT_GE(agreement, 0.999);
+    EXPECT_GT(lit, lookups / 10);  // or the figure would mean little
+    EXPECT_GT(dark, lookups / 10);
+    EXPECT_LT(band, lookups / 3);
+  }
+};
+
+TEST_F(CubeLookupTest, AgreesWithRays256) {
+  expect_agreement(256, 1);
+}
+TEST_F(CubeLookupTest, AgreesWithRays512) {
+  expect_agreement(512, 2);
+}
+
+}  // namespace
+}  // namespace chandelier::test

@@ -1,2 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the hard filter at any point, without a picture.
 #version 460
-layout(local_size_x=64) in; void main(){}
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "frame_schema.glsl"
+
+struct Question {
+  vec3 p;
+  uint map;
+  vec3 n;
+};
+
+layout(local_size_x = 64) in;
+layout(binding = 0, scalar) readonly buffer View { ViewConstants view; };
+layout(binding = 1, scalar) readonly buffer Maps { ShadowMap maps[]; };
+layout(binding = 2, scalar) readonly buffer Views { ShadowView views[]; };
+layout(binding = 3, scalar) readonly buffer Questions { Question questions[]; };
+layout(binding = 4, scalar) writeonly buffer Answers { float answers[]; };
+layout(binding = 5) uniform samplerCubeArrayShadow cubes;
+layout(binding = 6) uniform sampler2DArrayShadow layers;
+
+#include "shadows/filter/hard.glsl"
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= uint(questions.length())) return;
+  Question q = questions[i];
+  answers[i] = hard_visibility(maps[q.map], q.p, q.n);
+}
