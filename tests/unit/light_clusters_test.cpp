@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Selection of light clusters: the paper's counts, and what must hold of any lights.
+#include "lights/light_clusters.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace chandelier::lights {
+namespace {
+
+// Ten circles of eight lights, as the paper's atrium has them (Table 1).
+std::vector<ClusterLight> atrium() {
+  std::vector<ClusterLight> lights;
+  for (const float z : {-4.5f, 4.5f}) {
+    for (const float x : {-10.0f, -5.0f, 0.0f, 5.0f, 10.0f}) {
+      for (int i = 0; i < 8; ++i) {
+        const float angle = 2.0f * 3.14159265f * static_cast<float>(i) / 8.0f;
+        lights.push_back({{x + 0.44f * std::cos(angle), 2.5f, z + 0.44f * std::sin(angle)}, 7.0f});
+      }
+    }
+  }
+  return lights;
+}
+
+TEST(LightClustersTest, PaperTable1) {
+  const std::pair<float, size_t> rows[]{{0.0f, 80}, {0.1f, 80}, {0.3f, 44}, {0.5f, 26}, {1.6f, 10}};
+  for (const auto& [d_init_m, count] : rows) {
+    const auto result = select_light_clusters(
+        atrium(), {.camera_ws = {-11, 2, 2}, .d_init_m = d_init_m, .z_far_m = 30.0f, .scaling = DistanceScaling::grow});
+    EXPECT_EQ(result.clusters.size(), count) << "d_init " << d_init_m;
+  }
+}
+
+TEST(LightClustersTest, ThreeScalingsOfDMin) {
+  ClusterSettings settings{.camera_ws = {1, 0, 0}, .d_init_m = 0.5f, .z_far_m = 20.0f};
+  const glm::vec3 ten_metres_off(1, 10, 0), thirty(1, 0, 30);
+  settings.scaling = DistanceScaling::grow;
+  EXPECT_FLOAT_EQ(scaled_d_min(settings, ten_metres_off), 0.75f);
+  EXPECT_FLOAT_EQ(scaled_d_min(settings, thirty), 1.25f);
+  settings.scaling = DistanceScaling::paper_formula;
+  EXPECT_FLOAT_EQ(scaled_d_min(settings, ten_metres_off), 0.25f);
+  EXPECT_FLOAT_EQ(scaled_d_min(settings, thirty), 0.0f);
+  settings.scaling = DistanceScaling::none;
+  EXPECT_FLOAT_EQ(scaled_d_min(settings, ten_metres_off), 0.5f);
+  EXPECT_FLOAT_EQ(scaled_d_min(settings, thirty), 0.5f);
+}
+
+TEST(LightClustersTest, NoLightsAndOneLight) {
+  EXPECT_TRUE(select_light_clusters({}, {}).clusters.empty());
+  const ClusterLight one{{1, 2, 3}, 4};
+  const auto result = select_light_clusters({&one, 1}, {.d_init_m = 2.0f, .scaling = DistanceScaling::none});
+  ASSERT_EQ(result.clusters.size(), 1u);
+  EXPECT_EQ(result.clusters[0].center, 0u);
+  EXPECT_EQ(result.clusters[0].range_m, 4.0f);
+  EXPECT_EQ(result.clusters[0].d_min_m, 2.0f);
+  EXPECT_EQ(result.clusters[0].light_count, 1u);
+}
+
+// The largest range becomes a centre first; a light exactly d_min away is not farther than d_min.
+TEST(LightClustersTest, LargestRangeFirstAndDMinIsInclusive) {
+  const ClusterLight lights[]{{{0, 0, 0}, 1}, {{1, 0, 0}, 5}, {{2, 0, 0}, 1}, {{2.001f, 0, 0}, 0.5f}};
+  const auto result = select_light_clusters(lights, {.d_init_m = 1.0f, .scaling = DistanceScaling::none});
+  ASSERT_EQ(result.clusters.size(), 2u);
+  EXPECT_EQ(result.clusters[0].center, 1u);
+  EXPECT_EQ(result.clusters[1].center, 3u);
+  EXPECT_EQ(result.cluster_of_light, (std::vector<uint32_t>{0, 0, 1, 1}));  // the third is nearer to the fourth
+  EXPECT_FLOAT_EQ(result.clusters[0].range_m, 5.0f);
+  EXPECT_FLOAT_EQ(result.clusters[1].range_m, 0.001f + 1.0f);
+}
+
+// Equal ranges: the first light is the centre. Equally near centres: the one selected first.
+TEST(LightClustersTest, TiesGoByIndex) {
+  const ClusterLight lights[]{{{0, 0, 0}, 2}, {{2, 0, 0}, 2}, {{1, 0, 0}, 2}};
+  const auto result = select_light_clusters(lights, {.d_init_m = 1.5f, .scaling = DistanceScaling::none});
+  ASSERT_EQ(result.clusters.size(), 2u);
+  EXPECT_EQ(result.clusters[0].center, 0u);
+  EXPECT_EQ(result.clusters[1].center, 1u);
+  EXPECT_EQ(result.cluster_of_light[2], 0u);
+}
+
+struct RandomSet {
+  std::vector<ClusterLight> lights;
+  ClusterSettings settings;
+};
+
+RandomSet random_set(uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](float from, float to) {
+    return from + (to - from) * static_cast<float>(random() >> 8) * 0x1p-24f;
+  };
+  RandomSet set;
+  const uint32_t count = 1 + static_cast<uint32_t>(random() % 120);
+  for (uint32_t i = 0; i < count; ++i) {
+    set.lights.push_back({{uniform(-10, 10), uniform(0, 4), uniform(-10, 10)}, uniform(0.5f, 8)});
+    if (i > 0 && random() % 4 == 0) set.lights[i].position_ws = set.lights[i - 1].position_ws;  // in one place
+    if (i > 0 && random() % 3 == 0) set.lights[i].range_m = set.lights[0].range_m;
+  }
+  set.settings = {.camera_ws = {uniform(-12, 12), uniform(0, 3), uniform(-12, 12)},
+                  .d_init_m = random() % 8 == 0 ? 0.0f : uniform(0, 4),
+                  .z_far_m = uniform(5, 40),
+                  .scaling = static_cast<DistanceScaling>(seed % 3)};
+  return set;
+}
+
+// The order in which lights are looked at: descending range, ties by index.
+std::vector<uint32_t> selection_order(const std::vector<ClusterLight>& lights) {
+  std::vector<uint32_t> order(lights.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return lights[a].range_m != lights[b].range_m ? lights[a].range_m > lights[b].range_m : a < b;
+  });
+  return order;
+}
+
+class LightClustersOfRandomLights : public testing::TestWithParam<uint32_t> {
+ protected:
+  const RandomSet set = random_set(GetParam());
+  const std::vector<ClusterLight>& lights = set.lights;
+  const LightClusters result = select_light_clusters(set.lights, set.settings);
+  float distance(uint32_t a, uint32_t b) const { return glm::distance(lights[a].position_ws, lights[b].position_ws); }
+};
+INSTANTIATE_TEST_SUITE_P(Seeds, LightClustersOfRandomLights, testing::Range(0u, 20u));
+
+TEST_P(LightClustersOfRandomLights, EveryLightIsInOneClusterAndCountsAddUp) {
+  ASSERT_EQ(result.cluster_of_light.size(), lights.size());
+  std::vector<uint32_t> members(result.clusters.size());
+  for (const uint32_t cluster : result.cluster_of_light) {
+    ASSERT_LT(cluster, result.clusters.size());
+    ++members[cluster];
+  }
+  for (size_t c = 0; c < members.size(); ++c) {
+    EXPECT_EQ(result.clusters[c].light_count, members[c]);
+    EXPECT_EQ(result.cluster_of_light[result.clusters[c].center], c);
+    EXPECT_TRUE(c == 0 || result.clusters[c].center > result.clusters[c - 1].center);
+  }
+}
+
+// §3.1.2, as it is defined: a light is a centre exactly when it is farther than d_min from every earlier centre.
+TEST_P(LightClustersOfRandomLights, CentersAreThoseFartherThanDMinFromEarlierOnes) {
+  std::vector<uint32_t> earlier;
+  for (const uint32_t light : selection_order(lights)) {
+    const bool far_from_all = std::all_of(earlier.begin(), earlier.end(), [&](uint32_t center) {
+      return distance(light, center) > scaled_d_min(set.settings, lights[center].position_ws);
+    });
+    const bool is_center = std::any_of(result.clusters.begin(), result.clusters.end(),
+                                       [&](const LightCluster& cluster) { return cluster.center == light; });
+    EXPECT_EQ(is_center, far_from_all) << "light " << light;
+    if (is_center) earlier.push_back(light);
+  }
+}
+
+TEST_P(LightClustersOfRandomLights, EveryLightIsWithItsNearestCenter) {
+  for (uint32_t light = 0; light < lights.size(); ++light) {
+    const uint32_t joined = result.clusters[result.cluster_of_light[light]].center;
+    for (const LightCluster& other : result.clusters) EXPECT_LE(distance(light, joined), distance(light, other.center));
+  }
+}
+
+TEST_P(LightClustersOfRandomLights, RangesCoverTheirMembersAndNoMore) {
+  std::vector<float> needed(result.clusters.size(), 0.0f);
+  for (uint32_t light = 0; light < lights.size(); ++light) {
+    const uint32_t cluster = result.cluster_of_light[light];
+    needed[cluster] =
+        std::max(needed[cluster], distance(light, result.clusters[cluster].center) + lights[light].range_m);
+  }
+  for (size_t c = 0; c < needed.size(); ++c) {
+    EXPECT_FLOAT_EQ(result.clusters[c].range_m, needed[c]);
+    EXPECT_EQ(result.clusters[c].d_min_m, scaled_d_min(set.settings, lights[result.clusters[c].center].position_ws));
+  }
+}
+
+TEST_P(LightClustersOfRandomLights, SameInputSameOutput) {
+  const LightClusters again = select_light_clusters(lights, set.settings);
+  EXPECT_EQ(again.cluster_of_light, result.cluster_of_light);
+  ASSERT_EQ(again.clusters.size(), result.clusters.size());
+  for (size_t c = 0; c < again.clusters.size(); ++c) EXPECT_EQ(again.clusters[c].range_m, result.clusters[c].range_m);
+}
+
+}  // namespace
+}  // namespace chandelier::lights

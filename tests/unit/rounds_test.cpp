@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rounds: every map is drawn once, in order, within the limits, and shadow views cover every direction.
+#include "frame/rounds.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "shadows/project/shadow_views.h"
+
+namespace chandelier {
+namespace {
+
+struct Planned {
+  LightList list;
+  std::vector<frame::ShadowView> views;
+  std::vector<Round> rounds;
+};
+
+// Maps with these many views each.
+Planned plan(const std::vector<uint32_t>& views_of_maps, uint32_t cubes, uint64_t max_views) {
+  Planned planned;
+  for (const uint32_t count : views_of_maps) {
+    const auto map = static_cast<uint32_t>(planned.list.maps.size());
+    planned.list.maps.push_back({.first_view = static_cast<uint32_t>(planned.views.size()), .view_count = count});
+    for (uint32_t face = 0; face < count; ++face) planned.views.push_back({.layer = face, .shadow_map = map});
+  }
+  planned.rounds = plan_rounds(planned.list, planned.views, cubes, max_views);
+  return planned;
+}
+
+void expect_sound(const Planned& planned, uint32_t cubes, uint64_t max_views) {
+  uint32_t map = 0, view = 0;
+  for (const Round& round : planned.rounds) {
+    EXPECT_EQ(round.first_map, map);
+    EXPECT_EQ(round.first_view, view);
+    EXPECT_GE(round.map_count, 1u);
+    EXPECT_LE(round.map_count, cubes);
+    EXPECT_TRUE(round.map_count == 1 || round.view_count <= max_views);
+    std::set<uint32_t> layers;
+    for (uint32_t m = 0; m < round.map_count; ++m) EXPECT_EQ(planned.list.maps[map + m].cube, m);
+    for (uint32_t v = view; v < view + round.view_count; ++v) {
+      EXPECT_EQ(planned.views[v].layer / 6, planned.list.maps[planned.views[v].shadow_map].cube);
+      EXPECT_TRUE(layers.insert(planned.views[v].layer).second);
+    }
+    map += round.map_count;
+    view += round.view_count;
+  }
+  EXPECT_EQ(map, planned.list.maps.size());
+  EXPECT_EQ(view, planned.views.size());
+}
+
+TEST(RoundsTest, NothingNeedsNoRound) {
+  EXPECT_TRUE(plan({}, 4, 100).rounds.empty());
+}
+
+TEST(RoundsTest, OneRoundWhereAllFits) {
+  const Planned planned = plan({6, 6, 3, 6}, 4, 21);
+  EXPECT_EQ(planned.rounds.size(), 1u);
+  expect_sound(planned, 4, 21);
+}
+
+TEST(RoundsTest, OneCubeAtATime) {
+  const Planned planned = plan({6, 2, 6}, 1, 100);
+  EXPECT_EQ(planned.rounds.size(), 3u);
+  expect_sound(planned, 1, 100);
+}
+
+TEST(RoundsTest, ViewsLimitARoundButNotASingleMap) {
+  const Planned planned = plan({6, 2, 2, 6, 6}, 10, 4);
+  EXPECT_EQ(planned.rounds.size(), 4u);  // 6 | 2 2 | 6 | 6
+  expect_sound(planned, 10, 4);
+}
+
+TEST(RoundsTest, AnyPlanIsSound) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 300; ++i) {
+    std::vector<uint32_t> views(random() % 50);
+    for (uint32_t& count : views) count = 1 + static_cast<uint32_t>(random() % 6);
+    const auto cubes = static_cast<uint32_t>(1 + random() % 12);
+    const uint64_t max_views = 1 + random() % 40;
+    expect_sound(plan(views, cubes, max_views), cubes, max_views);
+  }
+}
+
+pack::Light lamp(pack::LightType type, const glm::vec3& direction, float outer_rad) {
+  pack::Light light;
+  light.type = type;
+  light.position_ws = {0.5f, 1, -4};
+  light.direction_ws = glm::normalize(direction);
+  light.range_m = type == pack::LightType::directional ? 0.0f : 5.0f;
+  light.intensity = 1;
+  light.color = glm::vec3(1);
+  light.inner_cone_cos = type == pack::LightType::spot ? std::cos(0.5f * outer_rad) : 1.0f;
+  light.outer_cone_cos = type == pack::LightType::spot ? std::cos(outer_rad) : -1.0f;
+  return light;
+}
+
+std::vector<frame::ShadowView> views_of(const pack::Light& light, LightList& list) {
+  list = select_lights({&light, 1}, {}, {}, 1.0f);
+  return project_lights(list, {}, 1.0f, {{-5, 0, -10}, {5, 3, 5}}, 256);
+}
+
+bool sees(const frame::ShadowView& view, const glm::vec3& p) {
+  const auto& c = view.clip_from_world;
+  const glm::vec4 clip = glm::mat4(c[0], c[1], c[2], c[3]) * glm::vec4(p, 1.0f);
+  return clip.w > 0.0f && std::abs(clip.x) <= clip.w * 1.0001f && std::abs(clip.y) <= clip.w * 1.0001f &&
+         clip.z >= 0.0f && clip.z <= clip.w;
+}
+
+// Each direction from a point light is seen by the face that Vulkan's cube sampling reads, with s and t as it reads
+// them.
+TEST(ShadowViewsTest, CubeFacesFollowVulkansTable) {
+  LightList list;
+  const auto views = views_of(lamp(pack::LightType::point, {0, -1, 0}, 0), list);
+  ASSERT_EQ(views.size(), 6u);
+  const struct {
+    glm::vec3 r;
+    uint32_t face;
+    glm::vec2 st;  // of the middle of the face towards the corner
+  } table[]{{{2, 0.5f, -1}, 0, {1, -0.5f}}, {{-2, 0.5f, -1}, 1, {-1, -0.5f}}, {{0.5f, 2, -1}, 2, {0.5f, -1}},
+            {{0.5f, -2, -1}, 3, {0.5f, 1}}, {{0.5f, -1, 2}, 4, {0.5f, 1}},    {{0.5f, -1, -2}, 5, {-0.5f, 1}}};
+  for (const auto& row : table) {
+    const frame::ShadowView& view = views[row.face];
+    const auto& c = view.clip_from_world;
+    const glm::vec4 clip = glm::mat4(c[0], c[1], c[2], c[3]) * glm::vec4(view.center_ws + row.r, 1.0f);
+    EXPECT_EQ(view.layer, row.face);
+    EXPECT_NEAR(clip.x / clip.w, row.st.x / 2, 1e-6) << "face " << row.face;
+    EXPECT_NEAR(clip.y / clip.w, row.st.y / 2, 1e-6) << "face " << row.face;
+    EXPECT_NEAR(clip.z / clip.w, frame::shadow_near_m / 2, 1e-6);
+  }
+}
+
+// What a cone lights is seen by one of the faces that were kept.
+TEST(ShadowViewsTest, SpotLightsKeepEveryFaceTheirConeTouches) {
+  std::mt19937 random(6);
+  const auto uniform = [&](float from, float to) {
+    return from + (to - from) * static_cast<float>(random() >> 8) * 0x1p-24f;
+  };
+  uint32_t spared = 0;
+  for (int i = 0; i < 500; ++i) {
+    const glm::vec3 direction(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1) + 1e-3f);
+    const pack::Light light = lamp(pack::LightType::spot, direction, uniform(0.05f, 1.5f));
+    LightList list;
+    const auto views = views_of(light, list);
+    ASSERT_EQ(list.maps.size(), 1u);
+    EXPECT_EQ(list.maps[0].view_count, views.size());
+    spared += 6 - static_cast<uint32_t>(views.size());
+    for (int k = 0; k < 200; ++k) {
+      const glm::vec3 way = glm::normalize(glm::vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1) + 1e-4f));
+      if (glm::dot(way, light.direction_ws) <= light.outer_cone_cos) continue;
+      bool seen = false;
+      for (const auto& view : views) seen = seen || sees(view, light.position_ws + 2.0f * way);
+      EXPECT_TRUE(seen);
+    }
+  }
+  EXPECT_GT(spared, 500u);
+}
+
+// Six cascades, each beyond the one before; whatever the camera sees of the scene is inside the cascade of its depth.
+TEST(ShadowViewsTest, CascadesCoverWhatIsInView) {
+  LightList list;
+  const auto views = views_of(lamp(pack::LightType::directional, {0.3f, -1, 0.2f}, 0), list);
+  ASSERT_EQ(views.size(), frame::cascade_count);
+  EXPECT_EQ(list.maps[0].is_directional, 1u);
+  std::mt19937 random(7);
+  const Camera camera;  // at the origin, along -z
+  const FrustumPlanes planes = frustum_planes(camera, 1.0f);
+  uint32_t tested = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const auto uniform = [&](float from, float to) {
+      return from + (to - from) * static_cast<float>(random() >> 8) * 0x1p-24f;
+    };
+    const float x = uniform(-5, 5), y = uniform(0, 3);
+    const glm::vec3 p(x, y, uniform(-10, 0));
+    if (!intersects(planes, p, 0.0f)) continue;
+    uint32_t cascade = 0;
+    while (cascade + 1 < views.size() && -p.z > views[cascade].far_m) ++cascade;
+    EXPECT_TRUE(sees(views[cascade], p));
+    ++tested;
+  }
+  EXPECT_GT(tested, 500u);
+  for (size_t i = 1; i < views.size(); ++i) EXPECT_GT(views[i].far_m, views[i - 1].far_m);
+}
+
+}  // namespace
+}  // namespace chandelier
