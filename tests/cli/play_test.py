@@ -54,8 +54,8 @@ class PlayTest(unittest.TestCase):
         cls.made = tempfile.TemporaryDirectory()
         cls.pack = pathlib.Path(cls.made.name) / "cornell.chandelier"
         scene = cls.pack.with_suffix(".glb")
-        subprocess.run([sys.executable, SOURCE / "examples/cornell.py", "-o", scene], check=True, stdout=subprocess.DEVNULL)
-        subprocess.run([BAKE, scene, "-o", cls.pack], check=True, stdout=subprocess.DEVNULL)
+        for command in ([sys.executable, SOURCE / "examples/cornell.py", "-o", scene], [BAKE, scene, "-o", cls.pack]):
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
     @classmethod
     def tearDownClass(cls):
@@ -153,8 +153,8 @@ class Headless(PlayTest):
         self.assertEqual(numbers["eye_ws"], [1, 2, 3])
         self.assertEqual(numbers["forward_ws"], [0, 0, -1])
         self.assertAlmostEqual(numbers["yfov_deg"], 60, 4)
-        self.assert_fails(1, f"the pack has .*{named['name']}.*, none of that name \\(nowhere\\)", self.pack, "--output", "x.png",
-                          "--camera", "nowhere")
+        self.assert_fails(1, f"the pack has .*{named['name']}.*, none of that name \\(nowhere\\)", self.pack,
+                          "--output", "x.png", "--camera", "nowhere")
 
     def test_the_validation_layer_is_silent(self):
         done = self.play_well(self.pack, "--output", "v.png", "--validation", "--preset", "lightcluster", *SMALL)
@@ -204,8 +204,8 @@ class BadInput(PlayTest):
         self.assert_fails(1, "none/x.png: cannot write", self.pack, "--output", "none/x.png")
         self.assert_fails(1, "none/x.json: cannot write", self.pack, "--output", "x.png", "--stats", "none/x.json")
         (self.folder / "file").write_text("in the way")
-        self.assert_fails(1, "file/report: cannot make the folder", self.pack, "--compare", "reference,lightcluster", "--report",
-                          "file/report")
+        self.assert_fails(1, "file/report: cannot make the folder", self.pack, "--compare",
+                          "reference,lightcluster", "--report", "file/report")
 
     def test_full_disk(self):
         done = self.play(self.pack, "--output", "whole.png", "--stats", "/dev/full", *SMALL)
@@ -224,8 +224,10 @@ class BadInput(PlayTest):
         self.assert_fails(2, "must end in .png", self.pack, "--output", "x.jpg")
         self.assert_fails(2, "--size", self.pack, "--output", "x.png", "--size", "0x0")
         self.assert_fails(2, "--bogus", self.pack, "--bogus")
-        self.assert_fails(2, "soft filter", self.pack, "--output", "x.png", "--select", "light-clusters", "--filter", "hard")
-        self.assert_fails(2, "--select", self.pack, "--compare", "reference,lightcluster", "--report", "x", "--select", "per-light")
+        self.assert_fails(2, "soft filter", self.pack, "--output", "x.png", "--select", "light-clusters",
+                          "--filter", "hard")
+        self.assert_fails(2, "--select", self.pack, "--compare", "reference,lightcluster", "--report", "x",
+                          "--select", "per-light")
 
 
 class Links(html.parser.HTMLParser):
@@ -276,8 +278,8 @@ class Compare(PlayTest):
         self.assertEqual(comparison["b"]["exposure_ev"], exposure)
         for side in ("reference", "lightcluster"):
             for ext in ("png", "pfm"):
-                self.play_well(self.pack, "--output", f"{side}.{ext}", "--preset", side, "--exposure", repr(exposure), "--d-init",
-                               0.6, *SMALL)
+                self.play_well(self.pack, "--output", f"{side}.{ext}", "--preset", side, "--d-init", 0.6, "--exposure",
+                               repr(exposure), *SMALL)
             self.assertEqual((self.folder / f"{side}.png").read_bytes(), (self.report / f"{side}.png").read_bytes())
         error = read_pfm(self.folder / "reference.pfm").astype(float) - read_pfm(self.folder / "lightcluster.pfm")
         self.assertAlmostEqual(comparison["rmse"]["linear"], numpy.sqrt(numpy.mean(error**2)), 9)
@@ -306,9 +308,8 @@ class Window(PlayTest):
             raise unittest.SkipTest("Xvfb is not installed")
         super().setUpClass()
         reading, writing = os.pipe()
-        cls.server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "320x240x24", "-nolisten", "tcp",
-                                       "-noreset"],
-                                      pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        command = ["Xvfb", "-displayfd", str(writing), "-screen", "0", "320x240x24", "-nolisten", "tcp", "-noreset"]
+        cls.server = subprocess.Popen(command, pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         cls.addClassCleanup(cls.stop_server)
         os.close(writing)
         assert select.select([reading], [], [], PATIENCE_S)[0], "Xvfb did not start"
