@@ -13,7 +13,7 @@ import numpy as np
 
 import textures
 from gltf_writer import Document, main, yaw
-from shapes import box, cylinder, join, lathe, quad, ring, sphere, sweep
+from shapes import Shape, box, cylinder, join, lathe, quad, ring, sphere, sweep
 
 RANGE_M = 2.0
 ROOM_X, ROOM_Z, ROOM_Y = 2.3, 1.7, 2.7  # half width, half depth, height
@@ -77,7 +77,7 @@ def cloth(radius, drop, folds=11, segments=132):
     grid = np.array([[((r + wave * math.sin(folds * a)) * math.cos(a), y, (r + wave * math.sin(folds * a)) * math.sin(a))
                       for a in angles] for r, y, wave in rows])
     along, down = np.gradient(grid, axis=1), np.gradient(grid, axis=0)
-    normals = np.cross(along, -down)
+    normals = np.cross(along, down)
     normals[:2] = (0, 1, 0)
     normals /= np.linalg.norm(normals, axis=2)[..., None]
     triangles, m = [], segments + 1
@@ -85,7 +85,6 @@ def cloth(radius, drop, folds=11, segments=132):
         for k in range(segments):
             a, b = i * m + k, (i + 1) * m + k
             triangles += [(a, b + 1, b)] + ([(a, a + 1, b + 1)] if i else [])
-    from shapes import Shape
     return Shape(grid.reshape(-1, 3), normals.reshape(-1, 3), grid.reshape(-1, 3)[:, (0, 2)], triangles)
 
 

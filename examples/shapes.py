@@ -198,7 +198,7 @@ def _arc_band(angles, radius, y_spring, z0, z1, inside):
     triangles = []
     for i in range(n - 1):
         face = [(i, i + 1, n + i + 1), (i, n + i + 1, n + i)]
-        triangles += face if inside else [t[::-1] for t in face]
+        triangles += [t[::-1] for t in face] if inside else face
     return Shape(positions, normals, uvs, triangles)
 
 

@@ -4,11 +4,16 @@
 import numpy as np
 
 
-def nearest_distance(point, triangles):
-    """triangles: an array (n, 3, 3). Ericson, Real-Time Collision Detection 5.1.5, as: the plane where the foot falls
+def nearest_distance(point, triangles, within=1.0):
+    """triangles: an array (n, 3, 3). The distance, or `within` where no triangle is nearer. Ericson, Real-Time Collision Detection 5.1.5, as: the plane where the foot falls
     inside the triangle, and the three edges otherwise."""
+    point = np.asarray(point, dtype=float)
+    near = (triangles.min(axis=1) < point + within).all(axis=1) & (triangles.max(axis=1) > point - within).all(axis=1)
+    triangles = triangles[near]
+    if len(triangles) == 0:
+        return within
     a, b, c = triangles[:, 0], triangles[:, 1], triangles[:, 2]
-    best = min(_segment(point, a, b), _segment(point, b, c), _segment(point, c, a))
+    best = min(within, _segment(point, a, b), _segment(point, b, c), _segment(point, c, a))
     normal = np.cross(b - a, c - a)
     area2 = np.einsum("ij,ij->i", normal, normal)
     solid = area2 > 0

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+# What a user types. `make help` lists the targets; setup/install.sh installs what they need on Debian 12.
+
+DEMOS := atrium cornell restaurant
+DEMO_SIZE := 960x540
+PYTHON := /usr/bin/python3
+BUILD := build
+PLAY := $(BUILD)/bin/chandelier-play
+BAKE := $(BUILD)/bin/chandelier-bake
+CPP_FILES := $(shell git ls-files '*.cpp' '*.h' 2>/dev/null)
+
+.PHONY: help setup build demo test test-mesa25 bench format portable clean
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make demo         build, make three scenes, render them with and without light clusters, say where the pictures lie"
+	@echo "make test         build and run every test"
+	@echo "make build        build into build/bin/"
+	@echo "make test-mesa25  run the GPU tests on Mesa 25, unpacked privately into build/mesa25"
+	@echo "make bench        time the selection of light clusters, and the atrium's stages"
+	@echo "make portable     build a chandelier-play that needs only glibc and a Vulkan loader, in build/portable/bin/"
+	@echo "make format       clang-format every C++ file"
+	@echo "make clean        remove build/"
+	@echo "demo, test and bench first install the missing Debian packages of setup/packages.txt (root or sudo)."
+
+setup:
+	@setup/install.sh
+
+$(BUILD)/build.ninja: CMakePresets.json
+	cmake --preset release
+
+# Ninja knows what is out of date, and says nothing to do in a second.
+build: $(BUILD)/build.ninja
+	cmake --build --preset release
+
+# Each of these begins with the packages, then the build, in this order even under make -j.
+test: setup
+	@$(MAKE) --no-print-directory build
+	ctest --preset release -j 2
+
+test-mesa25: setup
+	@$(MAKE) --no-print-directory build
+	set -e; variables="$$(setup/mesa25.sh $(BUILD)/mesa25)"; echo "$$variables"; \
+	  env $$variables ctest --preset release -L gpu
+
+demo: setup
+	@$(MAKE) --no-print-directory build
+	@$(MAKE) --no-print-directory $(DEMOS:%=$(BUILD)/demo/%/report.html)
+	@echo; echo "Pictures, differences and costs of each scene, reference against light clusters:"
+	@for name in $(DEMOS); do echo "  $(CURDIR)/$(BUILD)/demo/$$name/report.html"; done
+	@for name in $(DEMOS); do ls $(CURDIR)/$(BUILD)/demo/$$name/*.png | sed 's/^/  /'; done
+
+bench: setup
+	@$(MAKE) --no-print-directory build
+	@$(MAKE) --no-print-directory $(BUILD)/demo/atrium.chandelier
+	$(BUILD)/bin/chandelier-bench
+	$(PLAY) $(BUILD)/demo/atrium.chandelier --compare reference,lightcluster --size $(DEMO_SIZE) --frames 9 \
+	  --report $(BUILD)/bench/atrium
+
+EXAMPLE_MODULES := examples/gltf_writer.py examples/shapes.py examples/textures.py
+
+$(BUILD)/demo/%.glb: examples/%.py $(EXAMPLE_MODULES)
+	@mkdir -p $(@D)
+	$(PYTHON) $< -o $@
+
+$(BUILD)/demo/%.chandelier: $(BUILD)/demo/%.glb $(BAKE)
+	$(BAKE) $< -o $@
+
+$(BUILD)/demo/%/report.html: $(BUILD)/demo/%.chandelier $(PLAY)
+	$(PLAY) $< --compare reference,lightcluster --size $(DEMO_SIZE) --report $(@D)
+	@touch $@
+
+.PRECIOUS: $(BUILD)/demo/%.glb $(BUILD)/demo/%.chandelier
+
+format:
+	clang-format -i $(CPP_FILES)
+
+portable:
+	cmake --preset portable
+	cmake --build --preset portable
+	@ls -l $(CURDIR)/$(BUILD)/portable/bin/chandelier-play
+
+clean:
+	rm -rf $(BUILD)

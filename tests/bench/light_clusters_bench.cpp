@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long the selection of light clusters takes over the number of lights (LightCluster, Figure 4).
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "lights/light_clusters.h"
+
+namespace {
+
+using chandelier::lights::ClusterLight;
+
+// Lights of range 3 to 10 m, as dense as the paper's atrium however many they are: one in 24 square metres of floor, 5 m high.
+std::vector<ClusterLight> random_lights(int64_t count) {
+  std::mt19937 random(7);
+  const float half_side_m = std::sqrt(24.0f * float(count)) / 2.0f;
+  std::uniform_real_distribution<float> along(-half_side_m, half_side_m), up(0.0f, 5.0f), range(3.0f, 10.0f);
+  std::vector<ClusterLight> lights(static_cast<size_t>(count));
+  for (ClusterLight& light : lights) {
+    light.position_ws = {along(random), up(random), along(random)};
+    light.range_m = range(random);
+  }
+  return lights;
+}
+
+void select_light_clusters(benchmark::State& state) {
+  const std::vector<ClusterLight> lights = random_lights(state.range(0));
+  chandelier::lights::ClusterSettings settings;
+  settings.camera_ws = {0.0f, 1.7f, 0.0f};
+  settings.d_init_m = float(state.range(1)) / 10.0f;
+  size_t clusters = 0;
+  for (auto iteration : state) {
+    clusters = chandelier::lights::select_light_clusters(lights, settings).clusters.size();
+    benchmark::DoNotOptimize(clusters);
+  }
+  state.counters["light_clusters"] = double(clusters);
+  state.SetComplexityN(state.range(0));
+}
+
+BENCHMARK(select_light_clusters)
+    ->ArgNames({"lights", "d_init_dm"})
+    ->ArgsProduct({{32, 128, 512, 2048, 8192}, {5, 16, 50}})
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace
