@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 appendix B: Lambert under a GGX microfacet layer, and the falloff of KHR_lights_punctual.
+// glTF 2.0 appendix B: Lambert under a GGX microfacet layer, and the falloff of KHR_lights_punctual. Masking-shadowing is
+// height-correlated (Heitz 2014), where the appendix prints the separable form.
 #ifndef CHANDELIER_BRDF_GLSL
 #define CHANDELIER_BRDF_GLSL
 #include "shading/surface.glsl"

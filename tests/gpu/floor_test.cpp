@@ -49,20 +49,26 @@ double illuminance(const pack::Light& light, const Double3& p) {
   return arriving;
 }
 
-// glTF 2.0 appendix B.3.5, with D of Trowbridge-Reitz and the separable Smith G / (4 N·L N·V) as B.3.1 and B.3.2 print
-// them: V = 1 / (N·L + sqrt(α² + (1 - α²) N·L²)) / (N·V + …). B.2.3 has it as height-correlated 0.5 / (…).
+// Smith's auxiliary function of GGX for a direction that makes the cosine c with the normal (Heitz 2014, JCGT 3(2), eq.
+// 72).
+double smith_lambda(double c, double alpha) {
+  const double tangent2 = (1.0 - c * c) / (c * c);
+  return 0.5 * (std::sqrt(1.0 + alpha * alpha * tangent2) - 1.0);
+}
+
+// glTF 2.0 appendix B.3.5, with the height-correlated masking-shadowing of Heitz (eq. 99), as Khronos' own renderers
+// have it; appendix B.3.2 prints the separable form, which is darker on rough surfaces at a slant.
 Double3 ggx(const Floor& floor, const Double3& n, const Double3& l, const Double3& v) {
   const Double3 h = glm::normalize(l + v);
   const double n_l = glm::dot(n, l), n_v = glm::dot(n, v), n_h = glm::dot(n, h), v_h = glm::dot(v, h);
   const double alpha = floor.roughness * floor.roughness, alpha2 = alpha * alpha;
   const double d = alpha2 / (pi * std::pow(n_h * n_h * (alpha2 - 1.0) + 1.0, 2.0));
-  const double visibility = 0.5 / (n_l * std::sqrt(n_v * n_v * (1.0 - alpha2) + alpha2) +
-                                   n_v * std::sqrt(n_l * n_l * (1.0 - alpha2) + alpha2));
+  const double g = 1.0 / (1.0 + smith_lambda(n_l, alpha) + smith_lambda(n_v, alpha));
   const Double3 base(floor.base_color);
   const Double3 diffuse_color = base * (1.0 - floor.metallic);
   const Double3 f0 = Double3(0.04) * (1.0 - floor.metallic) + base * floor.metallic;
   const Double3 f = f0 + (Double3(1.0) - f0) * std::pow(1.0 - v_h, 5.0);
-  return (Double3(1.0) - f) * diffuse_color / pi + f * visibility * d;
+  return (Double3(1.0) - f) * diffuse_color / pi + f * (d * g / (4.0 * n_l * n_v));
 }
 
 Double3 expected_radiance(const Expected& e, const Double3& p) {
