@@ -38,11 +38,10 @@ Filter filter_of(int gltf_filter, const std::string& where) {
   }
 }
 
-/// KHR_materials_emissive_strength.
-float emissive_strength(const tinygltf::Material& material) {
-  const auto it = material.extensions.find("KHR_materials_emissive_strength");
-  if (it == material.extensions.end() || !it->second.IsObject() || !it->second.Has("emissiveStrength")) return 1;
-  return static_cast<float>(it->second.Get("emissiveStrength").GetNumberAsDouble());
+/// KHR_materials_emissive_strength. From the JSON: tinygltf cuts an extension's integers to 32 bits.
+float emissive_strength(const Json& material) {
+  static const Json::json_pointer kPath("/extensions/KHR_materials_emissive_strength/emissiveStrength");
+  return static_cast<float>(material.value(kPath, 1.0));
 }
 
 }  // namespace
@@ -62,7 +61,8 @@ std::uint32_t Materials::add_material(int index) {
     const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
     out.name = in.name;
     for (int c = 0; c < 4; ++c) out.base_color_factor[c] = static_cast<float>(pbr.baseColorFactor[c]);
-    for (int c = 0; c < 3; ++c) out.emissive[c] = static_cast<float>(in.emissiveFactor[c]) * emissive_strength(in);
+    const float strength = emissive_strength(gltf_.json["materials"][static_cast<std::size_t>(index)]);
+    for (int c = 0; c < 3; ++c) out.emissive[c] = static_cast<float>(in.emissiveFactor[c]) * strength;
     for (int c = 0; c < 3; ++c) {
       if (!std::isfinite(out.emissive[c])) fail(where + ", emissiveFactor", "is too strong for a float");
     }

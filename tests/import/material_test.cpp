@@ -59,6 +59,12 @@ TEST(Material, KeepsItsFactors) {
   EXPECT_EQ(material.double_sided, 1u);
 }
 
+TEST(Material, KeepsAnEmissiveStrengthBeyond32Bits) {
+  const Json strength = {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4294967295u}}}};
+  const Scene scene = with_material({{"emissiveFactor", {0.5, 0, 0}}, {"extensions", strength}}).import();
+  EXPECT_EQ(scene.materials.at(0).emissive.r, 2147483648.0f);
+}
+
 TEST(Material, MasksAndTurnsBlendingIntoMasking) {
   const pack::Contents mask = with_material({{"alphaMode", "MASK"}, {"alphaCutoff", 0.3}}).bake();
   EXPECT_EQ(mask.materials.at(0).alpha_mode, pack::AlphaMode::mask);
