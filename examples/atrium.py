@@ -224,7 +224,7 @@ def make():
     furniture(doc, mat)
     lamps(doc, mat)
     doc.add_camera("hall", CAMERA, (0.0, 2.0, 0.0), 60.0)
-    doc.add_camera("arcade", (-12.5, 1.7, -5.3), (0.0, 1.9, -4.2), 55.0)
+    doc.add_camera("arcade", (-12.2, 1.6, -4.7), (0.0, 2.1, -2.9), 60.0)
     doc.add_camera("gallery", (-12.0, 6.3, 4.6), (2.0, 1.2, -2.0), 60.0)
     return doc
 
