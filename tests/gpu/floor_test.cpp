@@ -151,6 +151,32 @@ TEST_F(FloorTest, DirectionalLight) {
   for (const Filter filter : {Filter::hard, Filter::pcf})
     expect_radiance(directional_light({0.5f, -1, 0.3f}, 3), {}, filter, Shade::lambert, all_pixels, 0);
 }
+// Two lights share a map that is read through a disc a quarter of a metre wide: a floor must not shadow itself, not
+// even where the disc reaches over an edge of the cube onto a face at another slope.
+TEST_F(FloorTest, LightClusterWithAWideDisc) {
+  Scene scene;
+  scene.add(level_square({0, 0, 0}, 10.0f), scene.add_material(plain_material(glm::vec3(0.5f))));
+  scene.lights = {point_light({0.4f, 1.2f, -0.2f}, 40, 12), point_light({0.5f, 1.25f, -0.28f}, 30, 11)};
+  Recipe recipe;
+  recipe.select = Select::light_clusters;
+  recipe.filter = Filter::pcf;
+  recipe.shade = Shade::lambert;
+  recipe.d_init_m = 1.6f;
+  const auto settings = settings_for(look({-0.7f, 2.5f, 1.9f}, {0.2f, 0, -0.3f}, 1.0f), 160, 128, recipe);
+  const Picture picture = draw(device(), scene, settings);
+  Difference difference;
+  for (uint32_t y = 0; y < settings.height; ++y) {
+    for (uint32_t x = 0; x < settings.width; ++x) {
+      const Double3 p(floor_point(settings, x, y));
+      Double3 expected(0.0);
+      for (const pack::Light& light : scene.lights)
+        expected += expected_radiance({light, {}, Shade::lambert, Double3(settings.camera.eye_ws)}, p);
+      compare(expected, Double3(radiance_at(picture, x, y)), 1e-5, difference);
+    }
+  }
+  EXPECT_LE(difference.relative, relative_tolerance);
+}
+
 TEST_F(FloorTest, PointLightGgx) {
   for (const double roughness : {0.25, 0.6, 1.0})
     for (const double metallic : {0.0, 0.4, 1.0})

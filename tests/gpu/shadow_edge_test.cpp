@@ -311,6 +311,53 @@ TEST_F(ShadowEdgeTest, DirectionalLight) {
   }
 }
 
+// A row of squares above a camera that looks along the floor: their shadows run through three cascades.
+TEST_F(ShadowEdgeTest, DirectionalLightFarAndNear) {
+  const glm::vec3 direction = glm::normalize(glm::vec3(-0.25f, -1, 0.15f));
+  Scene scene = floor_and_light(directional_light(direction, 3));
+  for (int i = -7; i < 7; ++i) scene.add(level_square({0, 2, static_cast<float>(i) + 0.5f}, 0.3f), 0);
+  const Blocked blocked = [&](const glm::vec3& p) {
+    const glm::vec3 at = p - direction * (2.0f / -direction.y);
+    return std::abs(at.x) < 0.3f && std::abs(at.z) < 7.0f && std::abs(at.z - std::floor(at.z) - 0.5f) < 0.3f;
+  };
+  Recipe recipe;
+  recipe.shade = Shade::lambert;
+  recipe.face_size_px = 512;
+  const RenderSettings settings = settings_for(look({0.2f, 1.0f, 7.5f}, {-0.2f, 0.2f, 3}, 1.0f), 256, 192, recipe);
+  LightList list = select_lights(scene.lights, recipe, settings.camera, 256.0f / 192.0f);
+  const auto views = project_lights(list, settings.camera, 256.0f / 192.0f, {{-8, 0, -8}, {8, 2, 8}}, 512);
+  const float expected = 0.5f / pi * 3.0f * -direction.y;
+  const Picture picture = draw(device(), scene, settings);
+  Counts counts;
+  std::vector<uint32_t> dark_of_cascade(views.size());
+  for (uint32_t y = 0; y < settings.height; ++y) {
+    for (uint32_t x = 0; x < settings.width; ++x) {
+      const glm::vec3 p = floor_point(settings, x, y);
+      if (pixel_direction(settings, x, y).y > -0.02f || std::abs(p.x) > 7.5f || std::abs(p.z) > 7.5f) continue;
+      const float distance = glm::distance(p, settings.camera.eye_ws);
+      const float depth = glm::dot(p - settings.camera.eye_ws, settings.camera.forward_ws);
+      size_t cascade = 0;
+      while (depth > views[cascade].far_m) ++cascade;
+      // As above, 1.5 texels cover diagonal and slant; a pixel is `distance` wide per radian and longer along the
+      // floor.
+      const float band_m = 1.5f * views[cascade].texel_m + distance * distance / 192.0f / settings.camera.eye_ws.y;
+      const Place place = place_of(blocked, p, band_m);
+      const float found = radiance_at(picture, x, y).x;
+      counts.lit += place == Place::lit;
+      counts.dark += place == Place::dark;
+      counts.acne += place == Place::lit && std::abs(found - expected) > 0.003f * expected;
+      counts.leaks += place == Place::dark && found != 0.0f;
+      dark_of_cascade[cascade] += place == Place::dark;
+    }
+  }
+  EXPECT_EQ(counts.acne, 0u);
+  EXPECT_EQ(counts.leaks, 0u);
+  EXPECT_GT(counts.lit, 5000u);
+  EXPECT_GE(std::count_if(dark_of_cascade.begin(), dark_of_cascade.end(), [](uint32_t n) { return n > 20; }), 3);
+  for (const uint32_t n : dark_of_cascade) std::cout << n << " ";
+  std::cout << "dark pixels in the cascades, lit " << counts.lit << "\n";
+}
+
 // A bare floor has no dark pixel where edges between cube faces cross it, however coarse the faces.
 TEST_F(ShadowEdgeTest, NoSeamsBetweenFaces) {
   for (const float height : {0.3f, 1.0f}) {
