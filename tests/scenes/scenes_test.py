@@ -137,7 +137,7 @@ class NightScenes(SceneTest):
     def check(self, scene, lights):
         pack = self.folder / "night.chandelier"
         run(BAKE, "--quiet", self.data(f"scenes/{scene}"), "-o", pack)
-        camera = json.loads((SOURCE / "examples/night_cameras.json").read_text())[pathlib.Path(scene).stem]
+        camera = next(iter(json.loads((SOURCE / "examples/night_cameras.json").read_text())[scene].values()))
         stats, radiance = play(pack, "--camera=" + camera)
         self.assertEqual(stats["counters"]["lights"], lights)
         self.assertTrue(numpy.isfinite(radiance).all())

@@ -50,18 +50,16 @@ std::array<glm::vec3, 8> corners(const Bounds& b) {
   return c;
 }
 
-// Splits between logarithmic and even (Zhang et al. 2006, parallel-split shadow maps), metres along the view.
+// Logarithmic splits (Zhang et al. 2006, parallel-split shadow maps), metres along the view: texels look equally large in
+// every cascade. What is nearer than 1/250 of the farthest thing in the scene shares the first one.
 std::array<float, frame::cascade_count + 1> split_depths(const Camera& camera, const Bounds& bounds) {
   float far_m = camera.znear_m * 2.0f;
   for (const glm::vec3& corner : corners(bounds))
     far_m = std::max(far_m, glm::dot(corner - camera.eye_ws, camera.forward_ws));
-  const float near_m = std::max(camera.znear_m, far_m * 0.002f);
+  const float near_m = std::max(camera.znear_m, far_m * 0.004f);
   std::array<float, frame::cascade_count + 1> splits{};
-  for (uint32_t i = 0; i <= frame::cascade_count; ++i) {
-    const float t = static_cast<float>(i) / frame::cascade_count;
-    splits[i] = glm::mix(near_m + (far_m - near_m) * t, near_m * std::pow(far_m / near_m, t), 0.75f);
-  }
-  splits[0] = 0.0f;
+  for (uint32_t i = 1; i <= frame::cascade_count; ++i)
+    splits[i] = near_m * std::pow(far_m / near_m, static_cast<float>(i) / frame::cascade_count);
   return splits;
 }
 
