@@ -12,7 +12,8 @@ namespace {
 
 using chandelier::lights::ClusterLight;
 
-// Lights of range 3 to 10 m, as dense as the paper's atrium however many they are: one in 24 square metres of floor, 5 m high.
+// Lights of range 3 to 10 m, as dense as the paper's atrium however many they are: one in 24 square metres of floor, 5
+// m high.
 std::vector<ClusterLight> random_lights(int64_t count) {
   std::mt19937 random(7);
   const float half_side_m = std::sqrt(24.0f * float(count)) / 2.0f;
