@@ -42,6 +42,7 @@ test: setup
 test-mesa25: setup
 	@$(MAKE) --no-print-directory build
 	set -e; variables="$$(setup/mesa25.sh $(BUILD)/mesa25)"; echo "$$variables"; \
+	  env $$variables $(PLAY) --list-devices | grep 'Mesa 25' || { echo "the Vulkan loader did not take Mesa 25" >&2; exit 1; }; \
 	  env $$variables ctest --preset release -L gpu
 
 demo: setup

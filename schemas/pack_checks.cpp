@@ -104,6 +104,24 @@ std::uint64_t image_bytes(const Image& image) {
   return bytes;
 }
 
+namespace {
+
+// What BatchInstance promises: runs of one material are as long as can be, and the opaque ones come first.
+std::string order_fault(const View& view) {
+  const auto place = [&](const BatchInstance& draw) {
+    const std::uint32_t material = view.batches[draw.batch].material;
+    return std::pair(view.materials[material].alpha_mode == AlphaMode::mask, material);
+  };
+  for (std::size_t i = 1; i < view.batch_instances.size(); ++i) {
+    if (place(view.batch_instances[i]) < place(view.batch_instances[i - 1])) {
+      return "batch_instances[" + text(i) + "]: not sorted by material, opaque ones first";
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 std::string check(const View& view) {
   if (std::string line = validate(view); !line.empty()) return line;
   if (std::string line = bounds_fault("bounds_min_ws", view.bake_info->bounds_min_ws, view.bake_info->bounds_max_ws);
@@ -115,6 +133,7 @@ std::string check(const View& view) {
   }
   if (std::string line = first_fault("batches", view.batches); !line.empty()) return line;
   if (std::string line = first_fault("batch_instances", view.batch_instances); !line.empty()) return line;
+  if (std::string line = order_fault(view); !line.empty()) return line;
   if (std::string line = first_fault("images", view.images); !line.empty()) return line;
   if (std::string line = first_fault("lights", view.lights); !line.empty()) return line;
   return first_fault("cameras", view.cameras);

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "lights/light_clusters.h"
+
 namespace chandelier {
 
 enum class GBuffer : uint32_t { depth_normal_material };
@@ -21,8 +23,7 @@ enum class Filter : uint32_t { hard, pcf };
 enum class Deliver : uint32_t { inlined };
 enum class Shade : uint32_t { ggx, lambert };
 
-/// How a light cluster's d_min follows its distance from the camera (README of runtime/lights).
-enum class DistanceScaling : uint32_t { grow, paper_formula, none };
+using lights::DistanceScaling;
 
 struct Recipe {
   GBuffer g_buffer = GBuffer::depth_normal_material;

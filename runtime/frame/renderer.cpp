@@ -55,7 +55,6 @@ frame::ViewConstants view_constants(const RenderSettings& settings, const glm::m
   return {.clip_from_world = columns(clip_from_world),
           .world_from_clip = columns(glm::inverse(clip_from_world)),
           .eye_ws = settings.camera.eye_ws,
-          .znear_m = settings.camera.znear_m,
           .forward_ws = axes_of(settings.camera).forward,
           .ambient = settings.ambient,
           .size_px = {static_cast<float>(settings.width), static_cast<float>(settings.height)},
@@ -147,7 +146,7 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
     cubes = std::max(cubes, round.map_count);
     views_at_once = std::max(views_at_once, round.view_count);
   }
-  if (store.face_size_px != settings.recipe.face_size_px || store.cube_count != cubes) {
+  if (store.face_size_px != settings.recipe.face_size_px || store.cube_count < cubes) {
     store = {};
     store = make_cube_array(device, settings.recipe.face_size_px, cubes);
     // A frame without shadow maps binds the store all the same.
@@ -208,7 +207,7 @@ void Renderer::Impl::record_round(VkCommandBuffer cmd, const Recipe& recipe, con
 }
 
 void Renderer::Impl::record(VkCommandBuffer cmd, const RenderSettings& settings, const FramePlan& plan) {
-  timers.start_frame(cmd);
+  timers.start_frame(cmd, static_cast<uint32_t>(3 * plan.rounds.size() + 2));
   record_uploads(cmd, plan);
 
   timers.begin(cmd, "g-buffer");
@@ -218,7 +217,8 @@ void Renderer::Impl::record(VkCommandBuffer cmd, const RenderSettings& settings,
                .first_view = static_cast<uint32_t>(plan.views.size() - 1),
                .view_count = 1,
                .merged_runs = 1,
-               .round = static_cast<uint32_t>(plan.rounds.size())},
+               .round = static_cast<uint32_t>(plan.rounds.size()),
+               .keep_order = true},
               camera_draws);
   record_g_buffer(cmd, g_buffer, scene, camera_draws, view.device, targets);
   timers.end(cmd);
@@ -259,7 +259,9 @@ FrameStats Renderer::Impl::read_stats(const RenderSettings& settings, const Fram
     stats.shadow_triangles += round.triangles;
   }
   stats.shadow_bytes = plan.list.maps.size() * cube_bytes(settings.recipe.face_size_px);
-  stats.shadow_pool_bytes = plan.rounds.empty() ? 0 : store.cube_count * cube_bytes(settings.recipe.face_size_px);
+  for (const Round& round : plan.rounds)
+    stats.shadow_pool_bytes =
+        std::max(stats.shadow_pool_bytes, round.map_count * cube_bytes(settings.recipe.face_size_px));
   stats.shadow_rounds = plan.rounds.size();
   return stats;
 }
@@ -290,6 +292,7 @@ void Renderer::warm_up(const RenderSettings& settings) {
   tiny.width = tiny.height = 32;
   tiny.recipe.face_size_px = 16;
   draw(tiny);
+  impl_->make_room(settings, impl_->plan(settings));
 }
 
 Picture Renderer::read_back() {

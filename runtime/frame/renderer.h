@@ -32,7 +32,7 @@ struct StageTime {
 
 /// What a frame took and did. Counters are exact and repeat from run to run.
 struct FrameStats {
-  double frame_ms = 0.0;  // from the first command recorded to the last one finished
+  double frame_ms = 0.0;  // from selecting lights to the last command finished
   std::vector<StageTime> stages;
   float exposure_ev = 0.0f;  // as used
   uint64_t lights = 0;
@@ -64,7 +64,7 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws a tiny frame so that no pipeline is compiled while a real one is timed.
+  /// Draws a tiny frame and makes room for a real one, so that the real one's time is its own.
   void warm_up(const RenderSettings& settings);
   /// Draws one frame and waits for it. Throws gpu::Error, std::invalid_argument where refusal() has a reason.
   FrameStats draw(const RenderSettings& settings);

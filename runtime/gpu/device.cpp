@@ -96,8 +96,9 @@ struct Features {
     VkBool32* value;
     const char* name;
   };
-  std::array<Need, 10> needs() {
-    return {{{&core.features.imageCubeArray, "imageCubeArray"},
+  std::array<Need, 11> needs() {
+    return {{{&core.features.fullDrawIndexUint32, "fullDrawIndexUint32"},
+             {&core.features.imageCubeArray, "imageCubeArray"},
              {&core.features.multiDrawIndirect, "multiDrawIndirect"},
              {&core.features.drawIndirectFirstInstance, "drawIndirectFirstInstance"},
              {&core.features.samplerAnisotropy, "samplerAnisotropy"},
@@ -216,7 +217,7 @@ std::vector<DeviceName> list_devices() {
 
 Device::Device(const DeviceOptions& options) {
   Instance owned;
-  owned.handle = create_instance(options, &validation_messages_);
+  owned.handle = create_instance(options, validation_messages_.get());
   instance = owned.handle;
   physical = choose(instance, options.device);
   queue_family = find_queue_family(physical);
@@ -251,7 +252,7 @@ Device::Device(const DeviceOptions& options) {
                                      .queueFamilyIndex = queue_family};
   check(vkCreateCommandPool(handle, &pool, nullptr, &command_pool), "vkCreateCommandPool");
   if (options.validation) {
-    const auto messenger = messenger_info(&validation_messages_);
+    const auto messenger = messenger_info(validation_messages_.get());
     check(vkCreateDebugUtilsMessengerEXT(instance, &messenger, nullptr, &messenger_), "vkCreateDebugUtilsMessengerEXT");
   }
   owned.handle = VK_NULL_HANDLE;

@@ -5,6 +5,7 @@
 #include <volk.h>
 
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct DeviceName {
 /// Every Vulkan device of this machine. Throws Error where there is no Vulkan loader.
 std::vector<DeviceName> list_devices();
 
+/// volk keeps one table of device functions for the whole program: only one Device may live at a time.
 class Device {
  public:
   explicit Device(const DeviceOptions& options);
@@ -53,11 +55,13 @@ class Device {
   std::string driver;
 
   /// Warnings and errors of the validation layer so far.
-  const std::vector<std::string>& validation_messages() const { return validation_messages_; }
+  const std::vector<std::string>& validation_messages() const { return *validation_messages_; }
+  /// The same list; it outlives the device, whose end is validated too.
+  std::shared_ptr<const std::vector<std::string>> validation_log() const { return validation_messages_; }
 
  private:
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-  std::vector<std::string> validation_messages_;
+  std::shared_ptr<std::vector<std::string>> validation_messages_ = std::make_shared<std::vector<std::string>>();
 };
 
 }  // namespace chandelier::gpu

@@ -51,14 +51,19 @@ struct Specialization {
   }
 };
 
+VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShaderModule module,
+                                      const Specialization& constants) {
+  return {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+          .stage = which,
+          .module = module,
+          .pName = "main",
+          .pSpecializationInfo = &constants.info};
+}
+
 }  // namespace
 
 Bound storage(const Buffer& buffer) {
   return {.type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, .buffer = {buffer.handle, 0, VK_WHOLE_SIZE}};
-}
-
-Bound uniform(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size) {
-  return {.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, .buffer = {buffer.handle, offset, size}};
 }
 
 Bound sampled(VkImageView view, VkSampler sampler, VkImageLayout layout) {
@@ -76,11 +81,7 @@ Pipeline make_compute_pipeline(const Device& device, const LayoutInfo& layout, s
   const auto module = make_module(device, spirv);
   const Specialization specialization(constants);
   const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                   .module = module,
-                                                   .pName = "main",
-                                                   .pSpecializationInfo = &specialization.info},
+                                         .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization),
                                          .layout = pipeline.layout};
   VkPipeline handle = VK_NULL_HANDLE;
   check(vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
@@ -95,16 +96,10 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
   const Specialization specialization(in.constants);
   const auto vertex = make_module(device, in.vertex);
   Owned<VkShaderModule> fragment;
-  std::vector<VkPipelineShaderStageCreateInfo> stages{{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                       .stage = VK_SHADER_STAGE_VERTEX_BIT,
-                                                       .module = vertex,
-                                                       .pName = "main",
-                                                       .pSpecializationInfo = &specialization.info}};
+  std::vector<VkPipelineShaderStageCreateInfo> stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, specialization)};
   if (!in.fragment.empty()) {
     fragment = make_module(device, in.fragment);
-    stages.push_back(stages[0]);
-    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
-    stages[1].module = fragment;
+    stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, specialization));
   }
 
   std::vector<VkVertexInputBindingDescription> streams;

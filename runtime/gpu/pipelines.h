@@ -17,7 +17,6 @@ struct Bound {
   VkDescriptorImageInfo image{};
 };
 Bound storage(const Buffer& buffer);
-Bound uniform(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size);
 Bound sampled(VkImageView view, VkSampler sampler, VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 Bound storage_image(const Image& image);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One allocation per resource: the runtime has a few hundred of them, far below any driver's limit.
+// One allocation per resource: a scene has a few hundred of them, and drivers allow 4096 or more.
 #include "gpu/resources.h"
 
 #include <algorithm>
@@ -11,6 +11,8 @@ namespace {
 uint32_t find_memory(const Device& device, uint32_t allowed, VkMemoryPropertyFlags wanted, const char* what) {
   for (uint32_t i = 0; i < device.memory.memoryTypeCount; ++i)
     if ((allowed >> i & 1u) && (device.memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+  if (wanted & VK_MEMORY_PROPERTY_HOST_CACHED_BIT)  // which a device need not have together with the others
+    return find_memory(device, allowed, wanted & ~VkMemoryPropertyFlags{VK_MEMORY_PROPERTY_HOST_CACHED_BIT}, what);
   throw Error(std::string("no memory type for ") + what);
 }
 

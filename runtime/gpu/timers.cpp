@@ -2,24 +2,21 @@
 #include "gpu/timers.h"
 
 namespace chandelier::gpu {
-namespace {
-constexpr uint32_t max_queries = 4096;
-}
+Timers::Timers(const Device& device) : device_(&device), ms_per_tick_(device.limits.timestampPeriod * 1e-6) {}
 
-Timers::Timers(const Device& device) : device_(&device), ms_per_tick_(device.limits.timestampPeriod * 1e-6) {
-  const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                   .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                   .queryCount = max_queries};
-  VkQueryPool pool = VK_NULL_HANDLE;
-  check(vkCreateQueryPool(device.handle, &info, nullptr, &pool), "vkCreateQueryPool");
-  pool_ = {device.handle, pool, vkDestroyQueryPool};
-}
-
-void Timers::start_frame(VkCommandBuffer cmd) {
+void Timers::start_frame(VkCommandBuffer cmd, uint32_t spans) {
+  if (room_ < 2 * spans) {
+    room_ = 2 * spans;
+    const VkQueryPoolCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, .queryType = VK_QUERY_TYPE_TIMESTAMP, .queryCount = room_};
+    VkQueryPool pool = VK_NULL_HANDLE;
+    check(vkCreateQueryPool(device_->handle, &info, nullptr, &pool), "vkCreateQueryPool");
+    pool_ = {device_->handle, pool, vkDestroyQueryPool};
+  }
   stages_.clear();
   spans_.clear();
   used_ = 0;
-  vkCmdResetQueryPool(cmd, pool_, 0, max_queries);
+  vkCmdResetQueryPool(cmd, pool_, 0, room_);
 }
 
 size_t Timers::stage_number(const char* name) {
@@ -30,12 +27,10 @@ size_t Timers::stage_number(const char* name) {
 }
 
 void Timers::begin(VkCommandBuffer cmd, const char* stage) {
-  const bool room = used_ + 2 <= max_queries;
-  spans_.push_back({stage_number(stage), room ? used_ : UINT32_MAX});
-  if (room) {
-    vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, used_);
-    used_ += 2;
-  }
+  if (used_ + 2 > room_) throw Error("more timed spans than announced");
+  spans_.push_back({stage_number(stage), used_});
+  vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, used_);
+  used_ += 2;
   begun_ = std::chrono::steady_clock::now();
 }
 
@@ -43,8 +38,7 @@ void Timers::end(VkCommandBuffer cmd) {
   const Span& span = spans_.back();
   stages_[span.stage].cpu_ms +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun_).count();
-  if (span.first_query != UINT32_MAX)
-    vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, span.first_query + 1);
+  vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, span.first_query + 1);
 }
 
 void Timers::add_cpu(const char* stage, double cpu_ms) {
@@ -58,9 +52,8 @@ std::vector<Timers::Stage> Timers::read() {
                                 VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
           "vkGetQueryPoolResults");
   for (const Span& span : spans_)
-    if (span.first_query != UINT32_MAX)
-      stages_[span.stage].gpu_ms +=
-          static_cast<double>(ticks[span.first_query + 1] - ticks[span.first_query]) * ms_per_tick_;
+    stages_[span.stage].gpu_ms +=
+        static_cast<double>(ticks[span.first_query + 1] - ticks[span.first_query]) * ms_per_tick_;
   return stages_;
 }
 

@@ -15,7 +15,8 @@ class Timers {
  public:
   explicit Timers(const Device& device);
 
-  void start_frame(VkCommandBuffer cmd);
+  /// Makes room for `spans` begin-end pairs.
+  void start_frame(VkCommandBuffer cmd, uint32_t spans);
   void begin(VkCommandBuffer cmd, const char* stage);
   void end(VkCommandBuffer cmd);
   /// Time that a stage took on the CPU alone.
@@ -32,13 +33,14 @@ class Timers {
  private:
   struct Span {
     size_t stage;
-    uint32_t first_query;  // UINT32_MAX where the pool was full: such a span has no GPU time
+    uint32_t first_query;
   };
   size_t stage_number(const char* name);
 
   const Device* device_;
   Owned<VkQueryPool> pool_;
   double ms_per_tick_;
+  uint32_t room_ = 0;  // queries of the pool
   uint32_t used_ = 0;
   std::vector<Stage> stages_;
   std::vector<Span> spans_;

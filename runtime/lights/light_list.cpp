@@ -44,8 +44,8 @@ struct Member {
   float filter_radius_m;
 };
 
-std::vector<Member> cluster(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
-                            const Recipe& recipe, const Camera& camera) {
+std::vector<Member> members_of_light_clusters(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
+                                              const Recipe& recipe, const Camera& camera) {
   std::vector<Member> members;
   std::vector<lights::ClusterLight> spheres;
   std::vector<uint32_t> numbers;
@@ -57,11 +57,10 @@ std::vector<Member> cluster(std::span<const pack::Light> lights, std::span<const
       numbers.push_back(i);
     }
   }
-  const auto result = lights::select_light_clusters(
-      spheres, {.camera_ws = camera.eye_ws,
-                .d_init_m = recipe.d_init_m,
-                .z_far_m = recipe.z_far_m,
-                .scaling = static_cast<lights::DistanceScaling>(recipe.distance_scaling)});
+  const auto result = lights::select_light_clusters(spheres, {.camera_ws = camera.eye_ws,
+                                                              .d_init_m = recipe.d_init_m,
+                                                              .z_far_m = recipe.z_far_m,
+                                                              .scaling = recipe.distance_scaling});
   for (uint32_t i = 0; i < numbers.size(); ++i) {
     const lights::LightCluster& joined = result.clusters[result.cluster_of_light[i]];
     members.push_back({numbers[i], numbers[joined.center], joined.range_m, joined.d_min_m});
@@ -79,8 +78,9 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
 
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect) {
   const auto in_view = lights_in_view(lights, camera, aspect);
-  std::vector<Member> members = recipe.select == Select::light_clusters ? cluster(lights, in_view, recipe, camera)
-                                                                        : one_map_each(lights, in_view);
+  std::vector<Member> members = recipe.select == Select::light_clusters
+                                    ? members_of_light_clusters(lights, in_view, recipe, camera)
+                                    : one_map_each(lights, in_view);
   std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
     return a.center != b.center ? a.center < b.center : a.light < b.light;
   });

@@ -50,7 +50,10 @@ std::optional<Camera> camera_from_numbers(std::string_view text) {
   }
   const glm::vec3 eye(numbers[0], numbers[1], numbers[2]);
   const glm::vec3 target(numbers[3], numbers[4], numbers[5]);
-  if (at != end || eye == target || !(numbers[6] > 0.0f && numbers[6] < 179.0f)) return std::nullopt;
+  const float distance = glm::distance(eye, target);
+  if (at != end || !(distance > 1e-6f) || !std::isfinite(distance * distance) ||
+      !(numbers[6] > 0.0f && numbers[6] < 179.0f))
+    return std::nullopt;
   return camera_looking_at(eye, target, numbers[6] * kPi / 180.0f);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <memory>
 
 #include "player/camera.h"
 #include "player/compare.h"
@@ -28,16 +29,16 @@ int list_devices() {
   return 0;
 }
 
-int report_validation(const Options& options, const gpu::Device& device) {
-  if (!options.validation) return 0;
-  for (const std::string& message : device.validation_messages())
-    fmt::print(stderr, "chandelier-play: validation: {}\n", message);
-  fmt::print(stderr, "chandelier-play: {} messages from the validation layer\n", device.validation_messages().size());
-  return device.validation_messages().empty() ? 0 : 1;
+// What the validation layer said, the end of the device included.
+int report_validation(const std::vector<std::string>& messages) {
+  for (const std::string& message : messages) fmt::print(stderr, "chandelier-play: validation: {}\n", message);
+  fmt::print(stderr, "chandelier-play: {} messages from the validation layer\n", messages.size());
+  return messages.empty() ? 0 : 1;
 }
 
-int run(const Options& options) {
-  if (options.mode == Mode::list_devices) return list_devices();
+using ValidationLog = std::shared_ptr<const std::vector<std::string>>;
+
+ValidationLog draw(const Options& options) {
   if (options.mode == Mode::headless) check_writable(options.output);
   if (!options.stats.empty()) check_writable(options.stats);
   const pack::File pack(options.pack);
@@ -64,7 +65,13 @@ int run(const Options& options) {
   const float scene_size_m = glm::distance(info.bounds_min_ws, info.bounds_max_ws);
   if (window) window->run(options, camera, scene_size_m, device, renderer);
 #endif
-  return report_validation(options, device);
+  return device.validation_log();
+}
+
+int run(const Options& options) {
+  if (options.mode == Mode::list_devices) return list_devices();
+  const ValidationLog log = draw(options);
+  return options.validation ? report_validation(*log) : 0;
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ void declare_view(CLI::App& app, Typed& typed) {
       ->check(number_between(0.0, 1e6))
       ->capture_default_str()
       ->group("View");
-  app.add_option("--exposure", typed.exposure, "Stops, or auto: from the picture's mean log luminance")
+  app.add_option("--exposure", typed.exposure, "Stops, or auto: from the picture's own brightness")
       ->type_name("EV|auto")
       ->capture_default_str()
       ->group("View");

@@ -17,11 +17,9 @@ const float DARKEST = 1e-6;  // pixels that no light reaches do not count
 
 shared vec2 partial[256];
 
-vec2 of_pixel(uint group, uint thread) {
-  ivec2 size = imageSize(radiance_image);
-  uint columns = uint(size.x + 15) / 16u;
-  ivec2 pixel = ivec2(group % columns, group / columns) * 16 + ivec2(thread % 16u, thread / 16u);
-  if (any(greaterThanEqual(pixel, size))) return vec2(0.0);
+vec2 of_pixel(uvec2 group, uint thread) {
+  ivec2 pixel = ivec2(group) * 16 + ivec2(thread % 16u, thread / 16u);
+  if (any(greaterThanEqual(pixel, imageSize(radiance_image)))) return vec2(0.0);
   float luminance = dot(imageLoad(radiance_image, pixel).rgb, vec3(0.2126, 0.7152, 0.0722));
   return luminance > DARKEST && luminance < 1e30 ? vec2(sqrt(luminance), 1.0) : vec2(0.0);
 }
@@ -30,7 +28,7 @@ void main() {
   uint thread = gl_LocalInvocationID.x;
   vec2 sum = vec2(0.0);
   if (pass == 0u)
-    sum = of_pixel(gl_WorkGroupID.x, thread);
+    sum = of_pixel(gl_WorkGroupID.xy, thread);
   else
     for (uint i = thread; i < tone.group_count; i += 256u) sum += vec2(sums[i].sum, sums[i].pixels);
   partial[thread] = sum;
@@ -40,8 +38,9 @@ void main() {
   }
   if (thread != 0u) return;
   if (pass == 0u) {
-    sums[gl_WorkGroupID.x].sum = partial[0].x;
-    sums[gl_WorkGroupID.x].pixels = partial[0].y;
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    sums[group].sum = partial[0].x;
+    sums[group].pixels = partial[0].y;
   } else {
     float automatic = partial[0].x > 0.0 ? log2(MIDDLE_GREY) - 2.0 * log2(partial[0].x / partial[0].y) : 0.0;
     sums[0].exposure_ev = tone.automatic != 0u ? automatic : tone.exposure_ev;

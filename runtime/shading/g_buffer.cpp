@@ -60,7 +60,7 @@ void record_g_buffer(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const G
     vkCmdSetCullMode(cmd, scene.double_sided[list.material] ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 1, 1,
                             &scene.material_sets[list.material], 0, nullptr);
-    draw_list(cmd, lists, list, 1);
+    draw_ordered_list(cmd, lists, list);
   }
   vkCmdEndRendering(cmd);
   gpu::image_barrier(cmd, targets.surface, use::color_attachment, use::sampled);

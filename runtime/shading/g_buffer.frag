@@ -33,7 +33,6 @@ vec3 bent_normal(Material m, vec3 n) {
 void main() {
   Material m = materials[material_number];
   vec4 base = m.base_color_factor * color * texture(base_color_map, uv_of(m, 0u, uv0_uv1));
-  if (m.alpha_mode == ALPHA_MODE_MASK && base.a < m.alpha_cutoff) discard;
 
   vec3 facet = cross(dFdx(position_from_eye), dFdy(position_from_eye));
   facet = dot(facet, position_from_eye) > 0.0 ? -facet : facet;
@@ -51,6 +50,8 @@ void main() {
   if (m.occlusion_texture != NONE)
     occlusion += m.occlusion_strength * (texture(occlusion_map, uv_of(m, 3u, uv0_uv1)).r - 1.0);
 
+  // Last: derivatives are undefined beside a pixel that has ended.
+  if (m.alpha_mode == ALPHA_MODE_MASK && base.a < m.alpha_cutoff) discard;
   surface_bits = pack_surface(Surface(bent, facet, base.rgb, metal_rough.x, metal_rough.y));
   radiance = vec4(emissive + view.ambient * occlusion * base.rgb, 1.0);
 }

@@ -18,6 +18,6 @@ vec3 srgb(vec3 x) { return mix(x * 12.92, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.05
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, imageSize(shown_image)))) return;
-  vec3 radiance = min(imageLoad(radiance_image, pixel).rgb, vec3(1e6));
-  imageStore(shown_image, pixel, vec4(srgb(filmic(radiance * exp2(sums[0].exposure_ev))), 1.0));
+  vec3 exposed = min(imageLoad(radiance_image, pixel).rgb * exp2(sums[0].exposure_ev), vec3(1e4));  // white long before
+  imageStore(shown_image, pixel, vec4(srgb(filmic(exposed)), 1.0));
 }

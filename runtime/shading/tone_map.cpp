@@ -8,8 +8,8 @@
 namespace chandelier {
 namespace {
 
-uint32_t groups(uint32_t width, uint32_t height) {
-  return (width + 15) / 16 * ((height + 15) / 16);
+uint32_t groups(uint32_t pixels) {
+  return (pixels + 15) / 16;
 }
 
 void computed_before_compute(VkCommandBuffer cmd) {
@@ -30,19 +30,20 @@ TonePipelines make_tone_pipelines(const gpu::Device& device) {
 }
 
 gpu::Buffer make_luminance_sums(const gpu::Device& device, uint32_t width, uint32_t height) {
-  return gpu::make_buffer(device, groups(width, height) * sizeof(frame::LuminanceSum),
+  return gpu::make_buffer(device, VkDeviceSize{groups(width)} * groups(height) * sizeof(frame::LuminanceSum),
                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::device);
 }
 
 void record_tone_map(VkCommandBuffer cmd, const TonePipelines& pipelines, std::optional<float> exposure_ev,
                      const gpu::Buffer& sums, const Targets& targets) {
-  const uint32_t group_count = groups(targets.width, targets.height);
+  const uint32_t columns = groups(targets.width);
+  const uint32_t rows = groups(targets.height);
   const frame::ToneConstants constants{
-      .exposure_ev = exposure_ev.value_or(0.0f), .automatic = exposure_ev ? 0u : 1u, .group_count = group_count};
+      .exposure_ev = exposure_ev.value_or(0.0f), .automatic = exposure_ev ? 0u : 1u, .group_count = columns * rows};
   gpu::image_barrier(cmd, targets.radiance, use::storage, use::storage);
   gpu::bind(cmd, pipelines.sum, {gpu::storage_image(targets.radiance), gpu::storage(sums)});
   gpu::push_constants(cmd, pipelines.sum, constants);
-  vkCmdDispatch(cmd, group_count, 1, 1);
+  vkCmdDispatch(cmd, columns, rows, 1);
   computed_before_compute(cmd);
   gpu::bind(cmd, pipelines.expose, {gpu::storage_image(targets.radiance), gpu::storage(sums)});
   gpu::push_constants(cmd, pipelines.expose, constants);

@@ -10,10 +10,16 @@ namespace {
 
 std::unique_ptr<gpu::Device> the_device;
 
-// Ends the device while main still runs, not among static destructors.
+// Ends the device while main still runs, not among static destructors; what was not freed before it is reported then.
 class DeviceEnvironment : public testing::Environment {
  public:
-  void TearDown() override { the_device.reset(); }
+  void TearDown() override {
+    if (!the_device) return;
+    const auto log = the_device->validation_log();
+    const size_t told = log->size();
+    the_device.reset();
+    for (size_t i = told; i < log->size(); ++i) ADD_FAILURE() << (*log)[i];
+  }
 };
 const testing::Environment* const environment = testing::AddGlobalTestEnvironment(new DeviceEnvironment);
 

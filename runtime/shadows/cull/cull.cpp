@@ -61,7 +61,8 @@ void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipe
                                        .first_view = input.first_view,
                                        .view_count = input.view_count,
                                        .merged_runs = input.merged_runs,
-                                       .round = input.round};
+                                       .round = input.round,
+                                       .keep_order = input.keep_order};
   gpu::bind(cmd, pipeline,
             {gpu::storage(input.views), gpu::storage(scene.batch_instances), gpu::storage(scene.batches),
              gpu::storage(scene.material_runs), gpu::storage(scene.run_of_batch_instance), gpu::storage(lists.draws),
@@ -71,6 +72,11 @@ void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipe
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
                       VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+}
+
+void draw_ordered_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list) {
+  vkCmdDrawIndexedIndirect(cmd, lists.draws.handle, VkDeviceSize{list.first_batch_instance} * sizeof(frame::CasterDraw),
+                           list.batch_instances, frame::caster_draw_stride);
 }
 
 void draw_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list, uint32_t view_count) {

@@ -18,22 +18,26 @@ layout(push_constant, scalar) uniform Push { CullConstants cull; };
 
 bool survives(ShadowView view, BatchInstance candidate);
 
-// List l holds the draws of its batch instances in every view, from first_of_run * view_count on.
+// List l holds the draws of its batch instances in every view, from first_of_run * view_count on. Where surfaces coincide,
+// the first one drawn is seen: draws that make a picture keep their order, draws that make only depth need none.
 void main() {
   uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * CULL_GROUP_SIZE;
   if (thread >= cull.batch_instance_count * cull.view_count) return;
   uint view = cull.first_view + thread / cull.batch_instance_count;
   uint number = thread % cull.batch_instance_count;
   BatchInstance candidate = batch_instances[number];
-  if (!survives(views[view], candidate)) return;
+  bool visible = survives(views[view], candidate);
+  if (!visible && cull.keep_order == 0u) return;
 
   uint run = run_of_batch_instance[number];
   bool merged = run < cull.merged_runs;
   uint list = merged ? 0u : run + 1u - cull.merged_runs;
   uint first = merged ? 0u : first_of_run[run];
   Batch batch = batches[candidate.batch];
-  uint slot = first * cull.view_count + atomicAdd(draw_counts[list], 1u);
-  draws[slot] = CasterDraw(batch.index_count, 1u, batch.first_index, 0u, slot, view, candidate.instance, batch.material);
+  uint slot = cull.keep_order != 0u ? number : first * cull.view_count + atomicAdd(draw_counts[list], 1u);
+  draws[slot] = CasterDraw(batch.index_count, uint(visible), batch.first_index, 0u, slot, view, candidate.instance,
+                           batch.material);
+  if (!visible) return;
   atomicAdd(counters[cull.round].draws, 1u);
   atomicAdd(counters[cull.round].triangles, batch.index_count / 3u);
 }

@@ -42,12 +42,15 @@ struct CullInput {
   uint32_t view_count;
   uint32_t merged_runs;  // 1: lists_by_material; max(1, opaque runs): lists_for_shadows
   uint32_t round;
+  bool keep_order = false;  // needs view_count 1
 };
 /// Records everything between earlier reads of `lists` and later indirect draws from them.
 void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,
                  const CullInput& input, const DrawLists& lists);
 
-/// One multi-draw-indirect over a list that was culled for `view_count` views.
+/// One multi-draw-indirect over a list that was culled with keep_order.
+void draw_ordered_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list);
+/// The same over a list that was culled for `view_count` views without it.
 void draw_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list, uint32_t view_count);
 
 }  // namespace chandelier

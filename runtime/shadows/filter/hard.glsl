@@ -6,7 +6,7 @@ float hard_visibility(ShadowMap map, vec3 p, vec3 n) {
   const float texels = 0.75;  // a texel's centre lies within half its diagonal
   if (map.is_directional != 0u) {
     ShadowView cascade = views[cascade_at(map, p)];
-    return cascade_lit(cascade, p + n * (2.0 * texels * cascade.texel_m));
+    return cascade_lit(cascade, p + n * (texels * cascade.texel_m));
   }
   return cube_lit(map, offset_from_surface(map, p, n, texels));
 }

@@ -37,7 +37,7 @@ float pcf_visibility(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
   float lit = 0.0;
   if (map.is_directional != 0u) {
     ShadowView cascade = views[cascade_at(map, p)];
-    p += n * (2.0 * texels * cascade.texel_m);
+    p += n * (texels * cascade.texel_m);
     axes *= SMOOTHING_TEXELS * cascade.texel_m;
     for (uint i = 0u; i < POISSON_TAPS; ++i) lit += cascade_lit(cascade, p + axes * POISSON_DISC[i]);
   } else {

@@ -46,11 +46,14 @@ uint cascade_at(ShadowMap map, vec3 p) {
   return cascade;
 }
 
-// Is p lit in this cascade? `depth_slack` is in units of the cascade's depth range.
+// A cascade's depth is even over the whole scene: rounding is a few units of the 24th bit of its range.
+const float CASCADE_ROUNDING = 2e-6;
+
+// Is p lit in this cascade?
 float cascade_lit(ShadowView cascade, vec3 p) {
   vec4 clip = mat4(cascade.clip_from_world[0], cascade.clip_from_world[1], cascade.clip_from_world[2],
                    cascade.clip_from_world[3]) * vec4(p, 1.0);
-  return texture(layers, vec4(clip.xy * 0.5 + 0.5, float(cascade.layer), clip.z + DEPTH_ROUNDING));
+  return texture(layers, vec4(clip.xy * 0.5 + 0.5, float(cascade.layer), clip.z + CASCADE_ROUNDING));
 }
 
 #endif

@@ -15,7 +15,7 @@ std::array<glm::vec4, 4> columns(const glm::vec4& x, const glm::vec4& y, const g
 
 // Depth is near / distance along the major axis: it does not depend on the light's range, so lights that share a map
 // read the same values as if each had its own.
-frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t map_number, uint32_t face, float texel_m) {
+frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t face, float texel_m) {
   const CubeFace axes = cube_face(face);
   const auto row = [&](const glm::vec3& axis) { return glm::vec4(axis, -glm::dot(axis, map.center_ws)); };
   return {
@@ -23,7 +23,6 @@ frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t map_number, ui
       .center_ws = map.center_ws,
       .range_m = map.range_m,
       .layer = face,
-      .shadow_map = map_number,
       .texel_m = texel_m,
       .far_m = 0.0f};
 }
@@ -40,7 +39,7 @@ void project_cube(const LightList& list, uint32_t map_number, float texel_m, std
   const frame::FrameLight& light = list.lights[map.first_light];
   const bool lone_spot = map.light_count == 1 && light.type == static_cast<uint32_t>(pack::LightType::spot);
   for (uint32_t face = 0; face < 6; ++face)
-    if (!lone_spot || cone_touches(cube_face(face), light)) views.push_back(cube_view(map, map_number, face, texel_m));
+    if (!lone_spot || cone_touches(cube_face(face), light)) views.push_back(cube_view(map, face, texel_m));
 }
 
 std::array<glm::vec3, 8> corners(const Bounds& b) {
@@ -50,13 +49,13 @@ std::array<glm::vec3, 8> corners(const Bounds& b) {
   return c;
 }
 
-// Logarithmic splits (Zhang et al. 2006, parallel-split shadow maps), metres along the view: texels look equally large in
-// every cascade. What is nearer than 1/250 of the farthest thing in the scene shares the first one.
+// Logarithmic splits (Zhang et al. 2006, parallel-split shadow maps), metres along the view: texels look equally large
+// in every cascade. What is nearer than 1/50 of the farthest thing in the scene, or than 5 m, shares the first one.
 std::array<float, frame::cascade_count + 1> split_depths(const Camera& camera, const Bounds& bounds) {
   float far_m = camera.znear_m * 2.0f;
   for (const glm::vec3& corner : corners(bounds))
     far_m = std::max(far_m, glm::dot(corner - camera.eye_ws, camera.forward_ws));
-  const float near_m = std::max(camera.znear_m, far_m * 0.004f);
+  const float near_m = std::max(camera.znear_m, std::min(far_m * 0.02f, 5.0f));
   std::array<float, frame::cascade_count + 1> splits{};
   for (uint32_t i = 1; i <= frame::cascade_count; ++i)
     splits[i] = near_m * std::pow(far_m / near_m, static_cast<float>(i) / frame::cascade_count);
@@ -77,10 +76,12 @@ Sphere slice_sphere(const Camera& camera, float aspect, float near_m, float far_
   return {camera.eye_ws + glm::normalize(camera.forward_ws) * middle, radius};
 }
 
-frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction, const Bounds& bounds,
-                               uint32_t map_number, uint32_t cascade, float far_m, uint32_t face_size_px) {
+frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction, const Bounds& bounds, uint32_t cascade,
+                               float far_m, uint32_t face_size_px) {
   const CameraAxes axes = axes_of({.forward_ws = direction});
-  const float texel_m = 2.0f * sphere.radius_m / static_cast<float>(face_size_px);
+  // Six texels of margin on each side, for snapping, normal offset and filter.
+  const float texels = static_cast<float>(std::max(face_size_px, 16u) - 12u);
+  const float texel_m = 2.0f * sphere.radius_m / texels;
   const auto snapped = [&](const glm::vec3& axis) {
     return std::floor(glm::dot(axis, sphere.center_ws) / texel_m) * texel_m;
   };
@@ -93,7 +94,7 @@ frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction,
   const float margin = 0.01f + 0.001f * (farthest - nearest);
   nearest -= margin;
   farthest += margin;
-  const float scale = 1.0f / sphere.radius_m;
+  const float scale = 2.0f / (texel_m * static_cast<float>(face_size_px));
   const float depth_scale = 1.0f / (farthest - nearest);
   return {
       .clip_from_world = columns(glm::vec4(axes.right * scale, -snapped(axes.right) * scale),
@@ -102,7 +103,6 @@ frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction,
       .center_ws = glm::vec3(0.0f),
       .range_m = 0.0f,
       .layer = cascade,
-      .shadow_map = map_number,
       .texel_m = texel_m,
       .far_m = far_m};
 }
@@ -112,8 +112,8 @@ void project_cascades(const LightList& list, uint32_t map_number, const Camera& 
   const glm::vec3 direction = list.lights[list.maps[map_number].first_light].direction_ws;
   const auto splits = split_depths(camera, bounds);
   for (uint32_t i = 0; i < frame::cascade_count; ++i)
-    views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), direction, bounds, map_number,
-                                 i, splits[i + 1], face_size_px));
+    views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), direction, bounds, i,
+                                 splits[i + 1], face_size_px));
 }
 
 }  // namespace
