@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,46 +16,37 @@ struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `where: what`, thrown.
-[[noreturn]] inline void fail(const std::string& where, const std::string& what) {
-  throw Error(where + ": " + what);
-}
+/// At most `most_bytes` of a UTF-8 text, cut between characters, with "..." where something is left out.
+std::string shortened(const std::string& text, std::size_t most_bytes);
+
+/// As a message shows it: control characters, line separators and what is not UTF-8 as escapes, and not endlessly long.
+std::string printable(const std::string& text);
+
+/// A number as short as it can be.
+std::string to_text(double number);
+
+/// `where: what`, made printable and thrown.
+[[noreturn]] void fail(const std::string& where, const std::string& what);
 
 /// A count that must fit the pack's 32-bit indices.
-inline std::uint32_t fit_u32(std::uint64_t count, const char* what) {
-  if (count >= 0xFFFFFFFFu)
-    fail("scene", std::string("too many ") + what + " for one pack (" + std::to_string(count) + ")");
-  return static_cast<std::uint32_t>(count);
-}
+std::uint32_t fit_u32(std::uint64_t count, const char* what);
 
 /// Warnings, one line per kind and file however often they occur.
 class Warnings {
  public:
-  void add(const std::string& file, const std::string& where, const std::string& what) {
-    for (Entry& entry : entries_) {
-      if (entry.file == file && entry.what == what) {
-        ++entry.count;
-        return;
-      }
-    }
-    entries_.push_back({file, where, what, 1});
-  }
+  /// `name`: one of those that the warning is about, where it is not one of `where`.
+  void add(const std::string& file, const std::string& where, const std::string& what, const std::string& name = "");
 
-  std::vector<std::string> lines() const {
-    std::vector<std::string> out;
-    for (const Entry& entry : entries_) {
-      const std::string more = entry.count > 1 ? " (and " + std::to_string(entry.count - 1) + " more)" : "";
-      out.push_back(entry.file + ": " + entry.where + more + ": " + entry.what);
-    }
-    return out;
-  }
+  /// `file: where (and 3 more): what`, or with names `file: where: what (A, B, C and 3 more)`, in the order of adding.
+  std::vector<std::string> lines() const;
 
  private:
   struct Entry {
-    std::string file, where, what;
-    std::uint64_t count;
+    std::string file, where, what, names;
+    std::uint64_t count = 0;
   };
   std::vector<Entry> entries_;
+  std::map<std::pair<std::string, std::string>, std::size_t> numbers_;  // of entries, by file and what
 };
 
 }  // namespace chandelier::baker

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // chandelier-bake: glTF scenes in, one pack out.
 #include <fmt/core.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -23,25 +26,52 @@ void print_summary(const pack::Contents& pack, std::uintmax_t bytes, double seco
              pack.images.size(), pack.lights.size(), bytes, seconds);
 }
 
-void refuse_overwriting_an_input(const baker::Options& options) {
-  for (const std::filesystem::path& input : options.inputs) {
+/// Before a bake that may take minutes: whether its pack could be written.
+void check_output(const std::filesystem::path& output) {
+  std::error_code error;
+  const std::string folder = output.has_parent_path() ? output.parent_path().string() : ".";
+  if (std::filesystem::is_directory(output, error)) baker::fail(output.string(), "the output is a folder");
+  if (!std::filesystem::is_directory(folder, error)) {
+    baker::fail(output.string(), "there is no such folder (" + folder + ")");
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    baker::fail(output.string(),
+                std::string("cannot write into its folder: ") + std::strerror(errno) + " (" + folder + ")");
+  }
+}
+
+/// The glTFs, their buffers and their images.
+void refuse_overwriting_an_input(const std::vector<std::filesystem::path>& files, const std::filesystem::path& output) {
+  for (const std::filesystem::path& file : files) {
     std::error_code error;
-    if (std::filesystem::equivalent(input, options.output, error)) {
-      baker::fail(options.output.string(), "the output is one of the inputs");
+    if (std::filesystem::equivalent(file, output, error)) {
+      baker::fail(output.string(), "the output is one of the inputs (" + file.string() + ")");
     }
   }
 }
 
+/// `work`, with `where` told where memory runs out.
+template <typename Work>
+auto with_memory_for(const std::string& where, Work work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    baker::fail(where, "not enough memory");
+  }
+}
+
 void run(const baker::Options& options) {
-  const baker::Progress progress(options.quiet);
-  refuse_overwriting_an_input(options);
+  const baker::Progress progress(!options.quiet && isatty(STDERR_FILENO));
+  check_output(options.output);
   baker::Scene scene;
   baker::Warnings warnings;
   for (const std::filesystem::path& input : options.inputs) {
     progress.next("reading " + input.string());
-    baker::import_gltf(input, scene, warnings);
+    with_memory_for(input.string(), [&] { baker::import_gltf(input, scene, warnings); });
   }
-  const pack::Contents pack = baker::bake(std::move(scene), options.bake, progress);
+  refuse_overwriting_an_input(scene.files_read, options.output);
+  const pack::Contents pack =
+      with_memory_for("scene", [&] { return baker::bake(std::move(scene), options.bake, progress); });
   progress.next("writing " + options.output.string());
   pack::write(options.output, pack);
   for (const std::string& line : warnings.lines()) fmt::print(stderr, "chandelier-bake: warning: {}\n", line);
@@ -57,10 +87,8 @@ int main(int argc, char** argv) {
   try {
     run(*options);
     return 0;
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "chandelier-bake: error: {}: not enough memory\n", options->inputs.front().string());
   } catch (const std::exception& error) {
-    fmt::print(stderr, "chandelier-bake: error: {}\n", error.what());
+    fmt::print(stderr, "chandelier-bake: error: {}\n", baker::printable(error.what()));
   }
   return 1;
 }

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "error.h"
+
 namespace chandelier::baker {
 namespace {
 
@@ -55,7 +57,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   } catch (const CLI::CallForHelp& help) {
     exit_code = app.exit(help);
   } catch (const CLI::ParseError& error) {
-    std::cerr << "chandelier-bake: error: " << error.what() << " (--help explains)\n";
+    std::cerr << "chandelier-bake: error: " << printable(error.what()) << " (--help explains)\n";
     exit_code = 2;
   }
   return std::nullopt;

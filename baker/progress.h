@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines on stderr that tell someone who waits what the bake is doing.
+// Lines on stderr that tell someone who waits at a terminal what the bake is doing.
 #pragma once
 
 #include <chrono>
@@ -10,19 +10,19 @@ namespace chandelier::baker {
 
 class Progress {
  public:
-  explicit Progress(bool quiet) : quiet_(quiet) {}
+  explicit Progress(bool shown) : shown_(shown) {}
 
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   /// Says what comes next, unless the bake has been too short for anyone to wonder.
   void next(const std::string& what) const {
     constexpr double kPatience_s = 1.0;
-    if (!quiet_ && seconds() > kPatience_s)
+    if (shown_ && seconds() > kPatience_s)
       std::fprintf(stderr, "chandelier-bake: %.1f s: %s\n", seconds(), what.c_str());
   }
 
  private:
-  bool quiet_;
+  bool shown_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

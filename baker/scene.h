@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -25,7 +26,6 @@ struct Vertex {
 static_assert(sizeof(Vertex) == 60);
 
 struct Primitive {
-  std::string where;  // for messages: file, mesh and primitive
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;  // a triangle list
   std::uint32_t material = 0;
@@ -34,7 +34,6 @@ struct Primitive {
 };
 
 struct Mesh {
-  std::string name;
   std::vector<Primitive> primitives;
 };
 
@@ -107,7 +106,8 @@ struct Camera {
 };
 
 struct Scene {
-  std::vector<std::string> sources;  // the inputs' file names, without folders
+  std::vector<std::string> sources;               // the inputs' file names, without folders
+  std::vector<std::filesystem::path> files_read;  // the inputs and every file that they name and use
   std::vector<Mesh> meshes;
   std::vector<MeshInstance> instances;
   std::vector<Material> materials;

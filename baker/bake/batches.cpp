@@ -34,6 +34,17 @@ std::size_t triangle_count(const Meshlets& pieces) {
   return count;
 }
 
+/// Whether a vertex has so many triangles that meshoptimizer, which looks at all of them for each one that it takes,
+/// would need time quadratic in them: 29 s for a fan of 100 000.
+bool has_hub(const std::vector<std::uint32_t>& indices, std::size_t vertex_count) {
+  constexpr std::uint32_t kMostTriangles = 1000;
+  std::vector<std::uint32_t> triangles(vertex_count, 0);
+  for (const std::uint32_t vertex : indices) {
+    if (++triangles[vertex] > kMostTriangles) return true;
+  }
+  return false;
+}
+
 Meshlets build_meshlets(const std::vector<std::uint32_t>& indices, const std::vector<Vertex>& vertices,
                         std::size_t batch_triangles) {
   const std::size_t bound = meshopt_buildMeshletsBound(indices.size(), kBatchVertices, batch_triangles);
@@ -41,17 +52,28 @@ Meshlets build_meshlets(const std::vector<std::uint32_t>& indices, const std::ve
     return Meshlets{std::vector<meshopt_Meshlet>(bound), std::vector<std::uint32_t>(bound * kBatchVertices),
                     std::vector<std::uint8_t>(bound * batch_triangles * 3)};
   };
+  const auto scan = [&](const std::vector<std::uint32_t>& order) {
+    Meshlets out = with_room();
+    out.meshlets.resize(meshopt_buildMeshletsScan(out.meshlets.data(), out.vertices.data(), out.corners.data(),
+                                                  order.data(), order.size(), vertices.size(), kBatchVertices,
+                                                  batch_triangles));
+    return out;
+  };
+  if (has_hub(indices, vertices.size())) {
+    std::vector<std::uint32_t> order(indices.size());
+    meshopt_spatialSortTriangles(order.data(), indices.data(), indices.size(), &vertices[0].position_ls.x,
+                                 vertices.size(), sizeof(Vertex));
+    return scan(order);
+  }
+  std::vector<std::uint32_t> order(indices.size());
+  meshopt_optimizeVertexCache(order.data(), indices.data(), indices.size(), vertices.size());
   Meshlets out = with_room();
-  out.meshlets.resize(meshopt_buildMeshlets(out.meshlets.data(), out.vertices.data(), out.corners.data(),
-                                            indices.data(), indices.size(), &vertices[0].position_ls.x, vertices.size(),
-                                            sizeof(Vertex), kBatchVertices, batch_triangles, 0.0f));
+  out.meshlets.resize(meshopt_buildMeshlets(out.meshlets.data(), out.vertices.data(), out.corners.data(), order.data(),
+                                            order.size(), &vertices[0].position_ls.x, vertices.size(), sizeof(Vertex),
+                                            kBatchVertices, batch_triangles, 0.0f));
   if (triangle_count(out) == indices.size() / 3) return out;
   // Where squares of distances overflow (1e20 m), it leaves triangles out: cut in the order they come.
-  out = with_room();
-  out.meshlets.resize(meshopt_buildMeshletsScan(out.meshlets.data(), out.vertices.data(), out.corners.data(),
-                                                indices.data(), indices.size(), vertices.size(), kBatchVertices,
-                                                batch_triangles));
-  return out;
+  return scan(order);
 }
 
 CutPrimitive cut(Primitive&& primitive, std::size_t batch_triangles) {
@@ -60,10 +82,7 @@ CutPrimitive cut(Primitive&& primitive, std::size_t batch_triangles) {
   CutPrimitive out;
   out.material = primitive.material;
   if (primitive.indices.empty()) return out;
-  std::vector<std::uint32_t> indices(primitive.indices.size());
-  meshopt_optimizeVertexCache(indices.data(), primitive.indices.data(), indices.size(), primitive.vertices.size());
-
-  const Meshlets pieces = build_meshlets(indices, primitive.vertices, batch_triangles);
+  const Meshlets pieces = build_meshlets(primitive.indices, primitive.vertices, batch_triangles);
   for (const meshopt_Meshlet& meshlet : pieces.meshlets) {
     for (std::size_t i = 0; i < std::size_t{meshlet.triangle_count} * 3; ++i) {
       out.indices.push_back(pieces.vertices[meshlet.vertex_offset + pieces.corners[meshlet.triangle_offset + i]]);

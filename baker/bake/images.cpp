@@ -10,10 +10,13 @@
 #include <string_view>
 
 #include "../error.h"
+#include "jpeg.h"
 #include "png.h"
 
 namespace chandelier::baker {
 namespace {
+
+using Bytes = std::vector<std::uint8_t>;
 
 bool starts_with(const std::vector<std::uint8_t>& bytes, std::string_view magic) {
   return bytes.size() >= magic.size() &&
@@ -36,15 +39,9 @@ std::string name_of_format(const EncodedImage& image) {
   return "";
 }
 
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
-  return text.substr(0, 200);
-}
-
 /// RGBA from 1 to 4 channels; one or two are grey, or grey and alpha.
-std::vector<std::uint8_t> to_rgba(const std::vector<std::uint8_t>& in, std::size_t texels, std::size_t channels) {
-  if (channels == 4) return in;
+std::vector<std::uint8_t> to_rgba(std::vector<std::uint8_t>&& in, std::size_t texels, std::size_t channels) {
+  if (channels == 4) return std::move(in);
   std::vector<std::uint8_t> out(4 * texels, 255);
   for (std::size_t i = 0; i < texels; ++i) {
     const std::uint8_t* from = in.data() + i * channels;
@@ -74,37 +71,42 @@ Made make_image(const EncodedImage& image, ImageUse use) {
 
 }  // namespace
 
+void check_image_size(std::int64_t width, std::int64_t height, const std::string& where) {
+  if (width >= 1 && height >= 1 && width <= pack::max_image_size && height <= pack::max_image_size) return;
+  fail(where, "size is out of range, 1 to " + std::to_string(pack::max_image_size) + " (" + std::to_string(width) +
+                  "x" + std::to_string(height) + ")");
+}
+
 Texels decode_image(const EncodedImage& image) {
   if (!is_png(image) && !is_jpeg(image)) {
     const std::string size = std::to_string(image.bytes.size());
     fail(image.where, "is neither PNG nor JPEG" + name_of_format(image) + " (" + size + " bytes)");
   }
-  const std::vector<std::uint8_t> bytes = is_png(image) ? essential_png(image.bytes, image.where) : image.bytes;
+  if (is_jpeg(image)) check_jpeg(image.bytes, image.where);
+  const std::vector<std::uint8_t> png = is_png(image) ? essential_png(image.bytes, image.where) : Bytes();
+  const std::vector<std::uint8_t>& bytes = is_png(image) ? png : image.bytes;
   OIIO::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not premultiplied
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
   void* proxy = &memory;  // among the hints: the JPEG reader forgets open()'s own argument
   hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const auto input = OIIO::ImageInput::open(is_png(image) ? "image.png" : "image.jpg", &hints, &memory);
-  if (!input) fail(image.where, "cannot be decoded: " + one_line(OIIO::geterror()));
+  if (!input) fail(image.where, "cannot be decoded: " + shortened(OIIO::geterror(), 200));
   input->threads(1);  // images are decoded side by side already
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.width > int{pack::max_image_size} ||
-      spec.height > int{pack::max_image_size}) {
-    fail(image.where, "size is out of range, 1 to " + std::to_string(pack::max_image_size) + " (" +
-                          std::to_string(spec.width) + "x" + std::to_string(spec.height) + ")");
-  }
+  check_image_size(spec.width, spec.height, image.where);
   if (spec.nchannels < 1 || spec.nchannels > 4) {
     fail(image.where, "cannot be decoded: not 1 to 4 channels (" + std::to_string(spec.nchannels) + ")");
   }
   const std::size_t texels = std::size_t(spec.width) * std::size_t(spec.height);
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   std::vector<std::uint8_t> values(texels * channels);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, values.data())) {
-    fail(image.where, "cannot be decoded: " + one_line(input->geterror()));
+  // libjpeg goes on with grey after damage, and only warns: the reader keeps its first warning as its error.
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, values.data()) || input->has_error()) {
+    fail(image.where, "cannot be decoded: " + shortened(input->geterror(), 200));
   }
   return {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
-          to_rgba(values, texels, channels)};
+          to_rgba(std::move(values), texels, channels)};
 }
 
 void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const Progress& progress, Strings& strings,

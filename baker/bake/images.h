@@ -22,6 +22,9 @@ struct Texels {
   std::vector<std::uint8_t> rgba;  // rows from the top
 };
 
+/// Throws Error above 16384 texels, or below 1.
+void check_image_size(std::int64_t width, std::int64_t height, const std::string& where);
+
 /// Throws Error for what is neither PNG nor JPEG, is damaged or too large.
 Texels decode_image(const EncodedImage& image);
 

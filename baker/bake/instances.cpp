@@ -13,6 +13,10 @@
 namespace chandelier::baker {
 namespace {
 
+BatchRange range_of(const MeshInstance& instance, const std::vector<MeshBatches>& meshes) {
+  return is_mirrored(instance) ? meshes[instance.mesh].mirrored : meshes[instance.mesh].plain;
+}
+
 pack::Instance instance_record(const MeshInstance& instance, Strings& strings) {
   pack::Instance out;
   for (int row = 0; row < 3; ++row) {
@@ -31,6 +35,15 @@ glm::dvec3 to_world(const pack::Instance& instance, const glm::vec3& local) {
           glm::dot(glm::dvec4(instance.world_from_local[2]), p)};
 }
 
+/// The nearest float that is not above, and the nearest that is not below.
+float float_below(double value) {
+  const auto nearest = static_cast<float>(value);
+  return double{nearest} > value ? std::nextafter(nearest, -INFINITY) : nearest;
+}
+float float_above(double value) {
+  return -float_below(-value);
+}
+
 void set_bounds(const pack::Contents& pack, pack::BatchInstance& record) {
   const pack::Batch& batch = pack.batches[record.batch];
   const pack::Instance& instance = pack.instances[record.instance];
@@ -40,12 +53,32 @@ void set_bounds(const pack::Contents& pack, pack::BatchInstance& record) {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  record.bounds_min_ws = glm::vec3(low);
-  record.bounds_max_ws = glm::vec3(high);
+  record.bounds_min_ws = {float_below(low.x), float_below(low.y), float_below(low.z)};
+  record.bounds_max_ws = {float_above(high.x), float_above(high.y), float_above(high.z)};
 }
 
-bool is_finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+void check_finite(const pack::BatchInstance& record, const std::string& where) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float value : {record.bounds_min_ws[axis], record.bounds_max_ws[axis]}) {
+      if (!std::isfinite(value)) {
+        fail(where, std::string("reaches beyond a float in the world (") + "xyz"[axis] + " " + to_text(value) + ")");
+      }
+    }
+  }
+}
+
+/// A node costs a file few bytes, and each of its mesh's batches becomes a record: counted before any memory is taken.
+std::size_t count_batch_instances(const Scene& scene, const std::vector<MeshBatches>& meshes) {
+  constexpr std::uint64_t kMost = 1ull << 28;
+  std::uint64_t count = 0;
+  for (const MeshInstance& instance : scene.instances) {
+    count += range_of(instance, meshes).count;
+    if (count > kMost) {
+      fail(instance.where, "the instances up to here have more than " + std::to_string(kMost) + " batches (" +
+                               std::to_string(count) + ")");
+    }
+  }
+  return count;
 }
 
 /// Sorting key: opaque before masked, then material; the rest only for a fixed order.
@@ -58,15 +91,14 @@ auto draw_order(const pack::Contents& pack, const pack::BatchInstance& record) {
 
 void make_instances(const Scene& scene, const std::vector<MeshBatches>& meshes, Strings& strings,
                     pack::Contents& pack) {
+  pack.batch_instances.reserve(count_batch_instances(scene, meshes));
   std::vector<const MeshInstance*> sources;
   for (const MeshInstance& instance : scene.instances) {
-    const MeshBatches& mesh = meshes[instance.mesh];
-    const BatchRange range = is_mirrored(instance) ? mesh.mirrored : mesh.plain;
+    const BatchRange range = range_of(instance, meshes);
     if (range.count == 0) continue;
     const std::uint32_t number = fit_u32(pack.instances.size(), "instances");
     pack.instances.push_back(instance_record(instance, strings));
     sources.push_back(&instance);
-    fit_u32(std::uint64_t{pack.batch_instances.size()} + range.count, "batches in instances");
     for (std::uint32_t b = 0; b < range.count; ++b) {
       pack.batch_instances.push_back({.batch = range.first + b, .instance = number});
     }
@@ -74,9 +106,7 @@ void make_instances(const Scene& scene, const std::vector<MeshBatches>& meshes, 
   tbb::parallel_for(std::size_t{0}, pack.batch_instances.size(),
                     [&](std::size_t i) { set_bounds(pack, pack.batch_instances[i]); });
   for (const pack::BatchInstance& record : pack.batch_instances) {
-    if (!is_finite(record.bounds_min_ws) || !is_finite(record.bounds_max_ws)) {
-      fail(sources[record.instance]->where, "its place in the world is not finite");
-    }
+    check_finite(record, sources[record.instance]->where);
   }
   std::sort(pack.batch_instances.begin(), pack.batch_instances.end(),
             [&](const auto& a, const auto& b) { return draw_order(pack, a) < draw_order(pack, b); });

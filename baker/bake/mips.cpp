@@ -63,17 +63,20 @@ Taps taps(std::uint32_t size, std::uint32_t x) {
   return {3, {2 * x, 2 * x + 1, 2 * x + 2}, {(half - fx) / whole, half / whole, (fx + 1) / whole}};
 }
 
-Level halve(const Level& from) {
-  Level to{std::max(1u, from.width / 2), std::max(1u, from.height / 2), {}};
+/// `texel(x, y)` of a level of `width` by `height`.
+template <typename Texel>
+Level halve(std::uint32_t width, std::uint32_t height, Texel texel) {
+  Level to{std::max(1u, width / 2), std::max(1u, height / 2), {}};
   to.texels.resize(std::size_t{to.width} * to.height);
   for (std::uint32_t y = 0; y < to.height; ++y) {
-    const Taps rows = taps(from.height, y);
+    const Taps rows = taps(height, y);
     for (std::uint32_t x = 0; x < to.width; ++x) {
-      const Taps columns = taps(from.width, x);
+      const Taps columns = taps(width, x);
       glm::vec4 sum(0);
       for (int r = 0; r < rows.count; ++r) {
-        const glm::vec4* row = from.texels.data() + std::size_t{rows.at[r]} * from.width;
-        for (int c = 0; c < columns.count; ++c) sum += row[columns.at[c]] * (rows.weight[r] * columns.weight[c]);
+        for (int c = 0; c < columns.count; ++c) {
+          sum += texel(columns.at[c], rows.at[r]) * (rows.weight[r] * columns.weight[c]);
+        }
       }
       to.texels[std::size_t{y} * to.width + x] = sum;
     }
@@ -81,15 +84,15 @@ Level halve(const Level& from) {
   return to;
 }
 
-Level to_floats(const Texels& top, ImageUse use) {
-  Level level{top.width, top.height, std::vector<glm::vec4>(std::size_t{top.width} * top.height)};
-  for (std::size_t i = 0; i < level.texels.size(); ++i) {
-    const std::uint8_t* in = top.rgba.data() + 4 * i;
-    for (int c = 0; c < 4; ++c) {
-      level.texels[i][c] = use == ImageUse::color && c < 3 ? srgb().linear[in[c]] : static_cast<float>(in[c]) / 255.0f;
-    }
-  }
-  return level;
+/// Level 1 from the bytes of level 0: floats of level 0 would take four times its memory.
+Level halve_bytes(std::uint32_t width, std::uint32_t height, const std::uint8_t* rgba, ImageUse use) {
+  std::array<float, 256> plain;
+  for (int i = 0; i < 256; ++i) plain[i] = static_cast<float>(i) / 255.0f;
+  const std::array<float, 256>& curve = use == ImageUse::color ? srgb().linear : plain;
+  return halve(width, height, [&](std::uint32_t x, std::uint32_t y) {
+    const std::uint8_t* in = rgba + 4 * (std::size_t{y} * width + x);
+    return glm::vec4(curve[in[0]], curve[in[1]], curve[in[2]], plain[in[3]]);
+  });
 }
 
 glm::vec4 unit_normal(const glm::vec4& texel) {
@@ -120,12 +123,12 @@ std::vector<std::uint8_t> mip_chain(Texels&& top, ImageUse use) {
   std::vector<std::uint8_t> out = std::move(top.rgba);
   const std::uint32_t levels = mip_level_count(top.width, top.height);
   if (levels == 1) return out;
-  const Texels whole{top.width, top.height, out};
-  Level level = halve(to_floats(whole, use));
+  Level level = halve_bytes(top.width, top.height, out.data(), use);
   out.reserve(out.size() * 3 / 2);
   append(level, use, out);
   for (std::uint32_t i = 2; i < levels; ++i) {
-    level = halve(level);
+    level = halve(level.width, level.height,
+                  [&](std::uint32_t x, std::uint32_t y) { return level.texels[std::size_t{y} * level.width + x]; });
     append(level, use, out);
   }
   return out;

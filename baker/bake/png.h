@@ -8,8 +8,8 @@
 
 namespace chandelier::baker {
 
-/// The chunks of a PNG that its texels need: glTF ignores colour profiles and gamma, and the decoder would print warnings
-/// about them. Throws Error, beginning with `where`, where the file is cut or a checksum is wrong.
+/// The chunks of a PNG that its texels need: glTF ignores colour profiles and gamma, and the decoder would print
+/// warnings about them. Throws Error, beginning with `where`, where the file is cut or a checksum is wrong.
 std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where);
 
 }  // namespace chandelier::baker

@@ -9,9 +9,6 @@
 namespace chandelier::baker {
 namespace {
 
-/// An accessor without data is all zeros: this many are believed without bytes to show for them.
-constexpr std::uint64_t kMostZeros = 1u << 24;
-
 std::size_t component_size(int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
@@ -80,6 +77,10 @@ std::span<const std::uint8_t> element_bytes(const Gltf& gltf, int view, std::uin
                                             std::uint64_t stride, std::uint64_t element, const std::string& where) {
   const auto bytes = view_bytes(gltf, view, where);
   if (count == 0) return {};
+  if (stride < element) {
+    fail(where, "byteStride of buffer view " + std::to_string(view) + " is less than an element of " +
+                    std::to_string(element) + " bytes (" + std::to_string(stride) + ")");
+  }
   // (count - 1) * stride + element <= bytes - offset, without overflow
   const bool fits = offset <= bytes.size() && element <= bytes.size() - offset &&
                     count - 1 <= (bytes.size() - offset - element) / stride;
@@ -120,11 +121,10 @@ void for_each_element(const Gltf& gltf, const tinygltf::Accessor& accessor, std:
   }
 }
 
+}  // namespace
+
 const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int index, const std::string& where) {
   const tinygltf::Accessor& accessor = gltf.model.accessors[static_cast<std::size_t>(index)];
-  if (accessor.bufferView < 0 && accessor.count > kMostZeros) {
-    fail(where, "accessor without a buffer view is too long (" + std::to_string(accessor.count) + ")");
-  }
   if (accessor.sparse.isSparse && static_cast<std::uint64_t>(accessor.sparse.count) > accessor.count) {
     fail(where, "more sparse elements than elements (" + std::to_string(accessor.sparse.count) + ")");
   }
@@ -137,8 +137,6 @@ const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int index, const st
   }
   return accessor;
 }
-
-}  // namespace
 
 Floats read_floats(const Gltf& gltf, int index, std::size_t least_components, std::size_t most_components,
                    const std::string& where) {

@@ -6,6 +6,9 @@
 
 namespace chandelier::baker {
 
+/// The accessor; its count is not larger than its buffer view has bytes. Throws Error.
+const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int accessor, const std::string& where);
+
 /// `count` elements of `components` floats, normalized integers mapped to 0..1 or -1..1. Throws Error where bytes are
 /// missing, where the accessor has another number of components, or where a value is not finite.
 struct Floats {

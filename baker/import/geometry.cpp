@@ -11,6 +11,13 @@
 namespace chandelier::baker {
 namespace {
 
+constexpr std::uint64_t kMostBytes = 1ull << 34;
+constexpr std::uint64_t kMostZeros = 1ull << 22;
+
+std::string place_of(const Gltf& gltf, std::size_t mesh, std::size_t primitive) {
+  return place(gltf.json, "meshes", mesh) + ", primitive " + std::to_string(primitive);
+}
+
 struct Source {
   const Gltf& gltf;
   const tinygltf::Primitive& primitive;
@@ -163,11 +170,35 @@ void make_flat(Primitive& primitive) {
   std::iota(primitive.indices.begin(), primitive.indices.end(), 0u);
 }
 
+void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, GeometrySize& total) {
+  const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
+  const std::string where = gltf.file + ": " + place_of(gltf, mesh, number);
+  if (in.mode < TINYGLTF_MODE_TRIANGLES || !in.attributes.contains("POSITION")) return;
+  const auto count = [&](int accessor, const std::string& what) {
+    const tinygltf::Accessor& checked = checked_accessor(gltf, accessor, where + ", " + what);
+    if (checked.bufferView < 0) total.zeros += checked.count;
+    return std::uint64_t{checked.count};
+  };
+  for (const auto& [name, accessor] : in.attributes) count(accessor, "attribute " + name);
+  const std::uint64_t vertices = gltf.model.accessors[static_cast<std::size_t>(in.attributes.at("POSITION"))].count;
+  const std::uint64_t drawn = in.indices >= 0 ? count(in.indices, "indices") : vertices;
+  const std::uint64_t corners = in.mode == TINYGLTF_MODE_TRIANGLES ? drawn : 3 * drawn;
+  const bool flat = !in.attributes.contains("NORMAL");  // each corner a vertex of its own
+  total.bytes += (flat ? vertices + corners : vertices) * sizeof(Vertex) + corners * sizeof(std::uint32_t);
+  if (total.zeros > kMostZeros) {
+    fail(where, "accessors without a buffer view have more than " + std::to_string(kMostZeros) +
+                    " elements together (" + std::to_string(total.zeros) + ")");
+  }
+  if (total.bytes > kMostBytes) {
+    fail(where, "the geometry up to here needs more than " + std::to_string(kMostBytes) + " bytes (" +
+                    std::to_string(total.bytes) + ")");
+  }
+}
+
 std::optional<Primitive> read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t number, Warnings& warnings) {
   const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
-  const std::string here = place(gltf.json, "meshes", mesh) + ", primitive " + std::to_string(number);
-  Primitive out;
-  out.where = gltf.file + ": " + here;
+  const std::string here = place_of(gltf, mesh, number);
+  const std::string where = gltf.file + ": " + here;
   if (in.mode < TINYGLTF_MODE_TRIANGLES) {
     warnings.add(gltf.file, here, "points and lines are skipped");
     return std::nullopt;
@@ -178,12 +209,13 @@ std::optional<Primitive> read_primitive(const Gltf& gltf, std::size_t mesh, std:
   }
   if (!in.targets.empty()) warnings.add(gltf.file, here, "morph targets are ignored: the base mesh is baked");
 
-  const Floats positions = read_floats(gltf, in.attributes.at("POSITION"), 3, 3, out.where + ", attribute POSITION");
+  const Floats positions = read_floats(gltf, in.attributes.at("POSITION"), 3, 3, where + ", attribute POSITION");
+  Primitive out;
   out.vertices.resize(positions.count);
   for (std::size_t i = 0; i < positions.count; ++i) out.vertices[i].position_ls = vec3_at(positions, i);
   std::vector<std::uint32_t> corners;
   if (in.indices >= 0) {
-    corners = read_indices(gltf, in.indices, positions.count, out.where + ", indices");
+    corners = read_indices(gltf, in.indices, positions.count, where + ", indices");
   } else {
     corners.resize(fit_u32(positions.count, "vertices"));
     std::iota(corners.begin(), corners.end(), 0u);
@@ -194,7 +226,7 @@ std::optional<Primitive> read_primitive(const Gltf& gltf, std::size_t mesh, std:
   out.indices = triangle_list(in.mode, corners);
   if (out.indices.empty()) return std::nullopt;
 
-  const Source source{gltf, in, out.where, positions.count};
+  const Source source{gltf, in, where, positions.count};
   read_uvs(source, out.vertices);
   read_colors(source, out.vertices);
   const bool has_normals = read_normals(source, out.vertices);

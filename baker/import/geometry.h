@@ -9,6 +9,17 @@
 
 namespace chandelier::baker {
 
+/// What the geometry of a file comes to. A few bytes can stand for much: accessors without data are all zeros, and many
+/// primitives can share one.
+struct GeometrySize {
+  std::uint64_t bytes = 0;  // of vertices and indices in memory
+  std::uint64_t zeros = 0;  // elements of accessors without data
+};
+
+/// Adds a primitive to `total` before anything of it is read. Throws Error above 16 GiB, which holds 100 million
+/// triangles, or above 2^22 zeros.
+void add_size(const Gltf& gltf, std::size_t mesh, std::size_t primitive, GeometrySize& total);
+
 /// The triangles of a primitive, or nothing where it has none (points, lines, no positions). The material is left to
 /// the caller. Throws Error.
 std::optional<Primitive> read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive, Warnings& warnings);

@@ -20,6 +20,7 @@ using Json = nlohmann::json;
 struct Gltf {
   std::filesystem::path path;
   std::string file;                                // the path as the user typed it, for messages
+  std::vector<std::filesystem::path> files_read;   // the glTF and those beside it
   Json json;                                       // checked by check_gltf
   tinygltf::Model model;                           // the same, as structs; without buffers, images, skins, animations
   std::vector<std::vector<std::uint8_t>> buffers;  // empty where a buffer has no data of its own
@@ -42,8 +43,8 @@ std::string place(const Json& json, const char* section, std::size_t index);
 std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& where,
                                     std::uint64_t most_bytes = UINT64_MAX);
 
-/// The bytes of a data URI or of a file beside the glTF. Throws Error.
-std::vector<std::uint8_t> read_uri(const Gltf& gltf, const std::string& uri, const std::string& where,
+/// The bytes of a data URI or of a file beside the glTF, which is noted in files_read. Throws Error.
+std::vector<std::uint8_t> read_uri(Gltf& gltf, const std::string& uri, const std::string& where,
                                    std::uint64_t most_bytes = UINT64_MAX);
 
 /// The bytes of a buffer view. Throws Error where they are not all there.

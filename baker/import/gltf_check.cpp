@@ -12,9 +12,7 @@ namespace {
 enum class Need { optional, required };
 
 std::string shown(const Json& value) {
-  std::string text = value.dump(-1, ' ', true);
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return text;
+  return shortened(value.dump(-1, ' ', true), 60);
 }
 
 std::size_t section_size(const Json& json, const char* section) {
@@ -174,12 +172,23 @@ void check_mesh(const Json& root, const Object& mesh) {
   }
 }
 
+/// A matrix, by columns, is affine: in the world, w stays 1.
+void check_last_row(const Object& node) {
+  const Json* matrix = node.find("matrix", Need::optional);
+  if (!matrix) return;
+  const Json row = {(*matrix)[3], (*matrix)[7], (*matrix)[11], (*matrix)[15]};
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (std::abs(row[i].get<double>() - (i == 3)) > 1e-6) node.bad("matrix", "its last row is not 0, 0, 0, 1", row);
+  }
+}
+
 void check_node(const Json& root, const Object& node) {
   node.index("mesh", section_size(root, "meshes"));
   node.index("camera", section_size(root, "cameras"));
   node.index("skin", section_size(root, "skins"));
   node.indices("children", section_size(root, "nodes"));
   node.numbers("matrix", 16, -kBig, kBig);
+  check_last_row(node);
   node.numbers("translation", 3, -kBig, kBig);
   node.numbers("rotation", 4, -kBig, kBig);
   node.numbers("scale", 3, -kBig, kBig);
@@ -239,7 +248,13 @@ void check_image(const Json& root, const Object& image) {
 
 void check_camera(const Json&, const Object& camera) {
   camera.text("type", Need::required);
-  if (camera.json["type"] != "perspective") return;
+  const Json& type = camera.json["type"];
+  if (type == "orthographic") {
+    const auto orthographic = camera.object("orthographic", Need::required);
+    for (const char* key : {"xmag", "ymag", "znear", "zfar"}) orthographic->number(key, -kBig, kBig, Need::required);
+    return;
+  }
+  if (type != "perspective") camera.bad("type", "is not a camera type", type);
   const auto perspective = camera.object("perspective", Need::required);
   perspective->number("yfov", 1e-4, 3.1, Need::required);
   perspective->number("znear", 0, kBig, Need::required);
@@ -250,8 +265,8 @@ void check_camera(const Json&, const Object& camera) {
 void check_light(const Json&, const Object& light) {
   light.text("type", Need::required);
   light.text("name");
-  light.numbers("color", 3, 0, kBig);
-  light.number("intensity", 0, kBig);
+  light.numbers("color", 3, 0, 1e6);   // glTF says up to 1; a pack holds this much
+  light.number("intensity", 0, 1e12);  // a pack's limit
   light.number("range", 1e-12, kBig);
   const Json& type = light.json["type"];
   if (type != "point" && type != "spot" && type != "directional") light.bad("type", "is not a light type", type);
@@ -284,7 +299,7 @@ void check_section(const Json& root, const Json& owner, const char* section, con
   }
 }
 
-/// glTF nodes are strict trees: at most one parent each, no cycle.
+/// glTF nodes are strict trees: at most one parent each, no cycle; scenes name roots only.
 void check_tree(const Json& json, const std::string& file) {
   const std::size_t count = section_size(json, "nodes");
   std::vector<std::size_t> parent(count, count);
@@ -310,6 +325,15 @@ void check_tree(const Json& json, const std::string& file) {
     }
     for (std::size_t each : way) clear[each] = 1;
   }
+  for (std::size_t i = 0; i < section_size(json, "scenes"); ++i) {
+    const auto nodes = json["scenes"][i].find("nodes");
+    if (nodes == json["scenes"][i].end()) continue;
+    for (const Json& node : *nodes) {
+      if (parent[node.get<std::size_t>()] == count) continue;
+      fail(file + ": " + place(json, "scenes", i) + ", nodes",
+           "names a node that is below another (" + shown(node) + ")");
+    }
+  }
 }
 
 }  // namespace
@@ -325,11 +349,7 @@ std::string place(const Json& json, const char* section, std::size_t index) {
   if (all == json.end() || !all->is_array() || index >= all->size() || !(*all)[index].is_object()) return out;
   const auto name = (*all)[index].find("name");
   if (name == (*all)[index].end() || !name->is_string() || name->get_ref<const std::string&>().empty()) return out;
-  std::string text = name->get_ref<const std::string&>().substr(0, 80);
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';  // a message is one line
-  }
-  return out + " '" + text + "'";
+  return out + " '" + shortened(name->get_ref<const std::string&>(), 80) + "'";
 }
 
 void check_gltf(const Json& json, const std::string& file) {

@@ -74,17 +74,26 @@ Json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
   } catch (const Json::exception& error) {
     std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1, ..."
     what = what.substr(what.find(']') == std::string::npos ? 0 : what.find(']') + 2);
-    std::replace_if(
-        what.begin(), what.end(), [](unsigned char c) { return c < 0x20; }, ' ');
-    if (what.size() > 200) what = what.substr(0, 197) + "...";
-    fail(file, "is not a glTF: " + what);
+    fail(file, "is not a glTF: " + shortened(what, 200));
   }
 }
 
-/// tinygltf's structs for everything but files and the parts that the baker leaves out.
+/// Calls `visit(primitive, mesh, number)`.
+template <typename JsonOrConst, typename Visit>
+void for_each_primitive(JsonOrConst& json, Visit visit) {
+  if (!json.contains("meshes")) return;
+  for (std::size_t m = 0; m < json["meshes"].size(); ++m) {
+    auto& primitives = json["meshes"][m]["primitives"];
+    for (std::size_t p = 0; p < primitives.size(); ++p) visit(primitives[p], m, p);
+  }
+}
+
+/// tinygltf's structs for everything but files and the parts that the baker leaves out. It does not see indices: it
+/// refuses those that are all sparse.
 tinygltf::Model parse_model(const Json& json, const std::string& file) {
   Json reduced = json;
   for (const char* section : {"buffers", "images", "animations", "skins", "extras"}) reduced.erase(section);
+  for_each_primitive(reduced, [](Json& primitive, std::size_t, std::size_t) { primitive.erase("indices"); });
   const std::string text = reduced.dump();
   if (text.size() > 0xFFFFFFFFu) fail(file, "JSON is too large (" + std::to_string(text.size()) + " bytes)");
   tinygltf::TinyGLTF parser;
@@ -92,9 +101,11 @@ tinygltf::Model parse_model(const Json& json, const std::string& file) {
   std::string error, warning;
   if (!parser.LoadASCIIFromString(&model, &error, &warning, text.c_str(), static_cast<unsigned>(text.size()), "")) {
     while (!error.empty() && error.back() == '\n') error.pop_back();
-    std::replace(error.begin(), error.end(), '\n', ' ');
     fail(file, "is not a glTF: " + error);
   }
+  for_each_primitive(json, [&](const Json& primitive, std::size_t mesh, std::size_t number) {
+    model.meshes[mesh].primitives[number].indices = primitive.value("indices", -1);
+  });
   return model;
 }
 
@@ -120,10 +131,7 @@ std::string percent_decode(const std::string& uri) {
 
 /// The start of a URI as a message shows it.
 std::string shown(const std::string& uri) {
-  std::string text = uri.substr(0, 80);
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
-  return text;
+  return shortened(uri, 80);
 }
 
 std::vector<std::uint8_t> decode_base64(std::string_view text, const std::string& where) {
@@ -139,7 +147,7 @@ std::vector<std::uint8_t> decode_base64(std::string_view text, const std::string
     if (c >= '0' && c <= '9') value = c - '0' + 52;
     if (c == '+' || c == '-') value = 62;
     if (c == '/' || c == '_') value = 63;
-    if (value < 0) fail(where, std::string("data URI is not base64 ('") + (c >= 0x20 ? c : ' ') + "')");
+    if (value < 0) fail(where, std::string("data URI is not base64 ('") + c + "')");
     bits = bits << 6 | static_cast<std::uint32_t>(value);
     have += 6;
     if (have >= 8) {
@@ -196,19 +204,20 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std
                                     std::uint64_t most_bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) fail(where, "no such file (" + path.string() + ")");
-  if (!std::filesystem::is_regular_file(status)) fail(where, "is not a file (" + path.string() + ")");
+  if (!std::filesystem::exists(status)) fail(where, "no such file (" + shortened(path.string(), 400) + ")");
+  if (!std::filesystem::is_regular_file(status)) fail(where, "is not a file (" + shortened(path.string(), 400) + ")");
   const std::uint64_t size = std::filesystem::file_size(path, error);
   std::ifstream stream(path, std::ios::binary);
   if (error || !stream)
-    fail(where, "cannot be read: " + std::string(std::strerror(errno)) + " (" + path.string() + ")");
+    fail(where, "cannot be read: " + std::string(std::strerror(errno)) + " (" + shortened(path.string(), 400) + ")");
   std::vector<std::uint8_t> bytes(std::min(size, most_bytes));
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) fail(where, "cannot be read (" + path.string() + ")");
+  if (static_cast<std::size_t>(stream.gcount()) != bytes.size())
+    fail(where, "cannot be read (" + shortened(path.string(), 400) + ")");
   return bytes;
 }
 
-std::vector<std::uint8_t> read_uri(const Gltf& gltf, const std::string& uri, const std::string& where,
+std::vector<std::uint8_t> read_uri(Gltf& gltf, const std::string& uri, const std::string& where,
                                    std::uint64_t most_bytes) {
   const std::string scheme = uri_scheme(uri);
   if (scheme == "data") return read_data_uri(uri, where);
@@ -220,7 +229,8 @@ std::vector<std::uint8_t> read_uri(const Gltf& gltf, const std::string& uri, con
   std::error_code error;
   const bool literal =
       !std::filesystem::exists(folder / decoded, error) && std::filesystem::exists(folder / uri, error);
-  return read_file(folder / (literal ? uri : decoded), where, most_bytes);
+  gltf.files_read.push_back(folder / (literal ? uri : decoded));
+  return read_file(gltf.files_read.back(), where, most_bytes);
 }
 
 std::span<const std::uint8_t> view_bytes(const Gltf& gltf, int buffer_view, const std::string& where) {
@@ -243,12 +253,13 @@ void check_extensions(const Json& json, const std::string& file, Warnings& warni
     if (it == json.end()) continue;
     if (!it->is_array()) fail(file + ": " + key, "is not an array");
     for (const Json& name : *it) {
-      if (!name.is_string()) fail(file + ": " + key, "holds something else than a name (" + name.dump() + ")");
+      if (!name.is_string())
+        fail(file + ": " + key, "holds something else than a name (" + shortened(name.dump(), 60) + ")");
       if (kKnown.contains(name.get<std::string>())) continue;
-      const std::string text = shown(name.get<std::string>());
+      const auto& text = name.get_ref<const std::string&>();
       if (key == std::string("extensionsRequired"))
-        fail(file + ": extensionsRequired", "unknown extension (" + text + ")");
-      warnings.add(file, "extensionsUsed", "unknown extension is ignored (" + text + ")");
+        fail(file + ": extensionsRequired", "unknown extension (" + shortened(text, 80) + ")");
+      warnings.add(file, "extensionsUsed", "unknown extension is ignored", text);
     }
   }
 }
@@ -257,6 +268,7 @@ Gltf read_gltf(const std::filesystem::path& path, Warnings& warnings) {
   Gltf gltf;
   gltf.path = path;
   gltf.file = path.string();
+  gltf.files_read = {path};
   const std::vector<std::uint8_t> bytes = read_file(path, gltf.file);
   const Chunks chunks = split_container(bytes, gltf.file);
   if (chunks.json.empty()) fail(gltf.file, "is not a glTF: it is empty");

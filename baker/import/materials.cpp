@@ -8,6 +8,8 @@
 namespace chandelier::baker {
 namespace {
 
+constexpr double kMostEmissive = 1e12;  // a pack's limit
+
 Wrap wrap_of(int gltf_wrap, const std::string& where) {
   switch (gltf_wrap) {
     case TINYGLTF_TEXTURE_WRAP_REPEAT:
@@ -39,9 +41,9 @@ Filter filter_of(int gltf_filter, const std::string& where) {
 }
 
 /// KHR_materials_emissive_strength. From the JSON: tinygltf cuts an extension's integers to 32 bits.
-float emissive_strength(const Json& material) {
+double emissive_strength(const Json& material) {
   static const Json::json_pointer kPath("/extensions/KHR_materials_emissive_strength/emissiveStrength");
-  return static_cast<float>(material.value(kPath, 1.0));
+  return material.value(kPath, 1.0);
 }
 
 }  // namespace
@@ -61,10 +63,13 @@ std::uint32_t Materials::add_material(int index) {
     const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
     out.name = in.name;
     for (int c = 0; c < 4; ++c) out.base_color_factor[c] = static_cast<float>(pbr.baseColorFactor[c]);
-    const float strength = emissive_strength(gltf_.json["materials"][static_cast<std::size_t>(index)]);
-    for (int c = 0; c < 3; ++c) out.emissive[c] = static_cast<float>(in.emissiveFactor[c]) * strength;
+    const double strength = emissive_strength(gltf_.json["materials"][static_cast<std::size_t>(index)]);
+    for (int c = 0; c < 3; ++c) out.emissive[c] = static_cast<float>(in.emissiveFactor[c] * strength);
     for (int c = 0; c < 3; ++c) {
-      if (!std::isfinite(out.emissive[c])) fail(where + ", emissiveFactor", "is too strong for a float");
+      if (!(out.emissive[c] <= kMostEmissive)) {
+        fail(where + ", emissiveFactor", "times emissiveStrength is above " + to_text(kMostEmissive) + " (" +
+                                             to_text(in.emissiveFactor[c] * strength) + ")");
+      }
     }
     out.metallic_factor = static_cast<float>(pbr.metallicFactor);
     out.roughness_factor = static_cast<float>(pbr.roughnessFactor);
@@ -80,7 +85,7 @@ std::uint32_t Materials::add_material(int index) {
     out.occlusion = use(in.occlusionTexture, "occlusionTexture");
     out.emissive_map = use(in.emissiveTexture, "emissiveTexture");
     if (in.alphaMode != "OPAQUE" && in.alphaMode != "MASK" && in.alphaMode != "BLEND") {
-      fail(where + ", alphaMode", "is not OPAQUE, MASK or BLEND (" + in.alphaMode.substr(0, 40) + ")");
+      fail(where + ", alphaMode", "is not OPAQUE, MASK or BLEND (" + shortened(in.alphaMode, 40) + ")");
     }
     out.masked = in.alphaMode != "OPAQUE";
     if (in.alphaMode == "MASK") out.alpha_cutoff = static_cast<float>(in.alphaCutoff);
@@ -138,7 +143,7 @@ std::uint32_t Materials::use_image(int index) {
     const std::string uri = in["uri"].get<std::string>();
     const bool embedded = uri.rfind("data:", 0) == 0;
     if (out.name.empty() && !embedded) out.name = uri;
-    if (!embedded) out.where += " (" + uri.substr(0, 80) + ")";
+    if (!embedded) out.where += " (" + shortened(uri, 80) + ")";
     out.bytes = read_uri(gltf_, uri, out.where);
   } else if (in.contains("bufferView")) {
     const auto bytes = view_bytes(gltf_, in["bufferView"].get<int>(), out.where);

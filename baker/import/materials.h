@@ -11,7 +11,7 @@ namespace chandelier::baker {
 
 class Materials {
  public:
-  Materials(const Gltf& gltf, Scene& scene, Warnings& warnings) : gltf_(gltf), scene_(scene), warnings_(warnings) {}
+  Materials(Gltf& gltf, Scene& scene, Warnings& warnings) : gltf_(gltf), scene_(scene), warnings_(warnings) {}
 
   /// The scene's material for a glTF material, or for none (-1): glTF's default. Throws Error.
   std::uint32_t use(int material);
@@ -26,7 +26,7 @@ class Materials {
   std::uint32_t use_image(int image);
   std::uint32_t add_texture(int texture);
 
-  const Gltf& gltf_;
+  Gltf& gltf_;
   Scene& scene_;
   Warnings& warnings_;
   std::map<int, std::uint32_t> materials_, textures_, images_;

@@ -9,17 +9,22 @@
 namespace chandelier::baker {
 namespace {
 
+// A little beyond 1e-9 and 1e9, which are baked: 1e-9 cubed, and flattened by another 1e-9, is still a normal float.
+constexpr double kLeastScale = 0.999e-9, kMostScale = 1.001e9;
+
 glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where) {
   glm::dmat4 out(1);
   if (!node.matrix.empty()) {
-    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = node.matrix[i];  // both column-major
+    for (int column = 0; column < 4; ++column) {  // both column-major; the last row is checked: 0, 0, 0, 1
+      for (int row = 0; row < 3; ++row) out[column][row] = node.matrix[4 * column + row];
+    }
     return out;
   }
   if (!node.rotation.empty()) {
     const auto& r = node.rotation;
     const glm::dquat rotation(r[3], r[0], r[1], r[2]);  // glm: w first
     const double length = glm::length(rotation);
-    if (!(length > 1e-12)) fail(where + ", rotation", "has no direction (all zero)");
+    if (!(length > 1e-12)) fail(where + ", rotation", "has no direction (length " + to_text(length) + ")");
     out = glm::mat4_cast(rotation / length);
   }
   for (int c = 0; c < 3 && !node.scale.empty(); ++c) out[c] *= node.scale[c];
@@ -44,11 +49,13 @@ std::vector<std::size_t> root_nodes(const Gltf& gltf) {
   return roots;
 }
 
-bool is_finite(const glm::dmat4& m) {
+void check_finite(const glm::dmat4& m, const std::string& where) {
   for (int i = 0; i < 16; ++i) {
-    if (!std::isfinite(static_cast<float>(m[i / 4][i % 4]))) return false;
+    const double value = m[i / 4][i % 4];
+    if (!std::isfinite(static_cast<float>(value))) {
+      fail(where, "its place in the world is beyond a float (" + to_text(value) + ")");
+    }
   }
-  return true;
 }
 
 /// A direction of the node in the world, or zero where the transform leaves none.
@@ -75,10 +82,11 @@ std::vector<PlacedNode> place_nodes(const Gltf& gltf) {
     PlacedNode placed = open.back();
     open.pop_back();
     const std::string where = gltf.file + ": " + place(gltf.json, "nodes", placed.node);
-    if (seen[placed.node]++) fail(where, "is in the scene twice");
+    if (seen[placed.node]) fail(where, "is in the scene twice");
+    seen[placed.node] = 1;
     const tinygltf::Node& node = gltf.model.nodes[placed.node];
     placed.world_from_local = placed.world_from_local * local_transform(node, where);
-    if (!is_finite(placed.world_from_local)) fail(where, "its place in the world is not finite");
+    check_finite(placed.world_from_local, where);
     out.push_back(placed);
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it) {
       open.push_back({static_cast<std::size_t>(*it), placed.world_from_local});
@@ -89,9 +97,13 @@ std::vector<PlacedNode> place_nodes(const Gltf& gltf) {
 
 bool is_degenerate(const glm::dmat4& transform) {
   const glm::dmat3 linear(transform);
-  const double longest = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
-  // Relative to the scale, and far enough from zero for the float arithmetic of whoever draws it.
-  return !(longest > 1e-12) || !(std::abs(glm::determinant(linear)) > 1e-12 * longest * longest * longest);
+  double volume = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = glm::length(linear[axis]);
+    if (!(length > kLeastScale && length < kMostScale)) return true;
+    volume *= length;
+  }
+  return !(std::abs(glm::determinant(linear)) > 1e-9 * volume);
 }
 
 void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings) {

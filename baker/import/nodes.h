@@ -20,7 +20,8 @@ std::vector<PlacedNode> place_nodes(const Gltf& gltf);
 void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);
 void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);
 
-/// Whether the transform squashes space flat: normals and winding then have no meaning.
+/// Whether the transform squashes space flat, so that normals and winding have no meaning, or scales an axis by less
+/// than 1e-9 or more than 1e9, so that who draws it in floats would find it flat or infinite.
 bool is_degenerate(const glm::dmat4& transform);
 
 }  // namespace chandelier::baker

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 BAKE = os.environ["CHANDELIER_BAKE"]
 INSPECT = os.environ["CHANDELIER_INSPECT"]
@@ -31,6 +32,25 @@ def triangle():
         ],
         "buffers": [{"byteLength": len(data), "uri": "data:;base64," + base64.b64encode(data).decode()}],
     }
+
+
+def textured(image):
+    """The triangle with an image."""
+    gltf = triangle()
+    gltf["images"] = [{"uri": image, "name": "wall"}]
+    gltf["textures"] = [{"source": 0}]
+    gltf["materials"] = [{"emissiveTexture": {"index": 0}}]
+    gltf["meshes"][0]["primitives"][0]["material"] = 0
+    return gltf
+
+
+def png(width, height, rows, depth=8, color=6, packed=None):
+    """A PNG whose checksums are right; `rows`: each a filter byte and its texels."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    header = struct.pack(">IIBBBBB", width, height, depth, color, 0, 0, 0)
+    data = zlib.compress(rows) if packed is None else packed
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", data) + chunk(b"IEND", b"")
 
 
 def rig():
@@ -119,13 +139,25 @@ class Good(BakeTest):
         gltf = rig()
         del gltf["extensions"]["KHR_lights_punctual"]["lights"][0]["range"]
         self.bake(self.write("rig.gltf", gltf), "--range-threshold", "0.3")  # sqrt(30 cd / 0.3 lx) = 10 m
-        self.assertIn("10.0", json.dumps(self.inspect()))
+        light = self.inspect()["lights"][0]
+        self.assertAlmostEqual(light["range_m"], 10, places=5)
+        self.assertEqual(light["range_source"], "derived")
 
     def test_help_names_defaults_and_examples(self):
         done = self.run_bake("--help")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         for text in ("--batch-triangles", "100", "--range-threshold", "0.05", "--quiet", "Examples:"):
             self.assertIn(text, done.stdout)
+
+
+    def test_pngs_of_every_kind_bake_without_a_word(self):
+        for name, data in {
+                "plain": png(2, 2, b"\0" * 18), "two bits": png(5, 2, b"\0" * 6, depth=2, color=0),
+                "too much data": png(2, 2, b"\0" * 50), "rubbish after the data": png(
+                    2, 2, b"", packed=zlib.compress(b"\0" * 18) + b"rubbish")}.items():
+            with self.subTest(name=name):
+                self.write("a.png", data)
+                self.bake(self.write("a.gltf", textured("a.png")))
 
 
 class Usage(BakeTest):
@@ -192,11 +224,7 @@ class Bad(BakeTest):
         self.assert_refused(self.write("a.gltf", gltf), says="KHR_draco_mesh_compression")
 
     def test_an_image_that_cannot_be_decoded(self):
-        gltf = triangle()
-        gltf["images"] = [{"uri": "a.png", "name": "wall"}]
-        gltf["textures"] = [{"source": 0}]
-        gltf["materials"] = [{"emissiveTexture": {"index": 0}}]
-        gltf["meshes"][0]["primitives"][0]["material"] = 0
+        gltf = textured("a.png")
         for data in (b"no picture", b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff\xe0", b"\xff\xd8\xff" + b"\0" * 200):
             with self.subTest(data=data):
                 self.write("a.png", data)
@@ -211,12 +239,43 @@ class Bad(BakeTest):
 
     def test_an_output_that_cannot_be_written(self):
         scene = self.write("a.gltf", triangle())
+        bad = self.write("bad.gltf", b"{")  # the output is looked at first: a bake may take minutes
+        self.assert_refused(bad, says="there is no such folder", output=self.folder / "no/such/out.chandelier")
         self.assert_refused(scene, says="no/such/folder", output=self.folder / "no/such/folder/out.chandelier")
         self.assert_refused(scene, says=str(self.folder), output=self.folder)
 
     def test_an_output_that_is_an_input(self):
         scene = self.write("a.gltf", triangle())
         self.assert_refused(scene, says="the output is one of the inputs", output=scene)
+
+    def test_an_output_that_is_a_buffer_or_an_image_of_an_input(self):
+        gltf = textured("a.png")
+        buffer = self.write("a.bin", base64.b64decode(gltf["buffers"][0]["uri"].partition(",")[2]))
+        gltf["buffers"][0]["uri"] = "a.bin"
+        image = self.write("a.png", png(2, 2, b"\0" * 18))
+        scene = self.write("a.gltf", gltf)
+        self.bake(scene)
+        for output in (buffer, image, self.folder / "nothing" / ".." / "a.bin"):
+            with self.subTest(output=output):
+                (self.folder / "nothing").mkdir(exist_ok=True)
+                self.assert_refused(scene, says="the output is one of the inputs", output=output)
+
+    def test_pngs_that_the_decoder_would_complain_about(self):
+        for name, data in {
+                "too little data": png(2, 2, b"\0" * 10), "unknown filter": png(2, 2, b"\x09" * 18),
+                "damaged data": png(2, 2, b"", packed=b"\x78\x9c\xff\xff\xff\xff"), "no data": png(2, 2, b"", packed=b""),
+                "wrong checksum": png(2, 2, b"", packed=zlib.compress(b"\0" * 18)[:-1] + b"?"),
+                "no checksum": png(2, 2, b"", packed=zlib.compress(b"\0" * 18)[:-4]),
+                "no palette": png(2, 2, b"\0" * 6, color=3), "bad depth": png(2, 2, b"\0" * 18, depth=3),
+                "no width": png(0, 2, b"\0" * 18), "unknown colour": png(2, 2, b"\0" * 18, color=5)}.items():
+            with self.subTest(name=name):
+                self.write("a.png", data)
+                self.assert_refused(self.write("a.gltf", textured("a.png")), says="a.gltf: image 0 'wall' (a.png): ")
+
+    def test_line_breaks_in_names(self):
+        gltf = textured("a\nb.png")
+        self.assert_refused(self.write("a.gltf", gltf), says="image 0 'wall' (a\\nb.png): no such file")
+        self.assert_refused(self.folder / "a\nb.gltf", says="a\\nb.gltf: no such file")
 
 
 if __name__ == "__main__":

@@ -106,6 +106,19 @@ TEST(Accessor, IsZeroWhereSparseDataHasNoBase) {
   EXPECT_EQ(position(scene, 2), glm::vec3(0, 1, 0));
 }
 
+TEST(Accessor, ReadsIndicesThatAreAllSparse) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["accessors"][1] = {
+      {"componentType", kUnsignedShort},
+      {"type", "SCALAR"},
+      {"count", 3},
+      {"sparse",
+       {{"count", 2},
+        {"indices", {{"bufferView", gltf.add_view<std::uint8_t>({1, 2})}, {"componentType", kUnsignedByte}}},
+        {"values", {{"bufferView", gltf.add_view<std::uint16_t>({1, 2})}}}}}};
+  EXPECT_EQ(gltf.bake().bake_info.unique_triangles, 1u);
+}
+
 template <typename T>
 void expect_index_type(int component_type) {
   GltfBuilder gltf;

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "gltf_builder.h"
+#include "import/import.h"
 
 namespace chandelier::baker::test {
 namespace {
@@ -65,7 +66,7 @@ const Case kCases[] = {
      [](GltfBuilder& g) {
        g.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
      },
-     "node 0 'triangle', rotation: has no direction (all zero)"},
+     "node 0 'triangle', rotation: has no direction (length 0)"},
     {"translation beyond floats",
      [](GltfBuilder& g) {
        g.json["nodes"][0]["translation"] = {1e39, 0, 0};
@@ -77,13 +78,13 @@ const Case kCases[] = {
        g.json["nodes"][0]["children"] = {1};
        g.add_node({{"scale", {1e30, 1, 1}}});
      },
-     "node 1: its place in the world is not finite"},
+     "node 1: its place in the world is beyond a float (1e+60)"},
     {"vertices that overflow",
      [](GltfBuilder& g) {
        primitive(g)["attributes"]["POSITION"] = g.add_positions({0, 0, 0, 1e30f, 0, 0, 0, 1e30f, 0});
-       g.json["nodes"][0]["scale"] = {1e30, 1e30, 1e30};
+       g.json["nodes"][0]["scale"] = {1e9, 1e9, 1e9};
      },
-     "node 0 'triangle': its place in the world is not finite"},
+     "node 0 'triangle': reaches beyond a float in the world (x inf)"},
     {"NaN position",
      [](GltfBuilder& g) {
        primitive(g)["attributes"]["POSITION"] = g.add_positions({0, 0, 0, 1, NAN, 0, 0, 1, 0});
@@ -133,7 +134,78 @@ const Case kCases[] = {
        g.json["accessors"][0]["count"] = 4000000000;
        g.json["accessors"][0].erase("bufferView");
      },
-     "mesh 0, primitive 0, attribute POSITION: accessor without a buffer view is too long (4000000000)"},
+     "mesh 0, primitive 0: accessors without a buffer view have more than 4194304 elements together (4000000000)"},
+    {"many accessors without data",
+     [](GltfBuilder& g) {
+       g.json["accessors"][0]["count"] = 1u << 20;
+       g.json["accessors"][0].erase("bufferView");
+       primitive(g).erase("indices");
+       for (int i = 1; i < 5; ++i) g.json["meshes"][0]["primitives"].push_back(primitive(g));
+     },
+     "mesh 0, primitive 4: accessors without a buffer view have more than 4194304 elements together (5242880)"},
+    {"geometry that would fill the memory",
+     [](GltfBuilder& g) {
+       // Strips of 100 000 vertices: with flat normals 3 corners of 64 bytes and the vertex's own 60 for each.
+       const int position = g.append("accessors", {{"bufferView", g.add_view(std::vector<std::int8_t>(400000), 4)},
+                                                   {"componentType", kByte},
+                                                   {"type", "VEC3"},
+                                                   {"count", 100000}});
+       const Json strip = {{"mode", 5}, {"attributes", {{"POSITION", position}}}};
+       for (int i = 0; i < 700; ++i) g.json["meshes"][0]["primitives"].push_back(strip);
+     },
+     "mesh 0, primitive 682: the geometry up to here needs more than 17179869184 bytes (17186400372)"},
+    {"elements that overlap", [](GltfBuilder& g) { g.json["bufferViews"][0]["byteStride"] = 4; },
+     "mesh 0, primitive 0, attribute POSITION: byteStride of buffer view 0 is less than an element of 12 bytes (4)"},
+    {"matrix that is not affine",
+     [](GltfBuilder& g) { g.json["nodes"][0]["matrix"] = {1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2}; },
+     "node 0 'triangle', matrix: its last row is not 0, 0, 0, 1 ([0.5,0,0,2])"},
+    {"scene that names a child",
+     [](GltfBuilder& g) {
+       g.add_node({{"children", {0}}});
+       g.json["scenes"] = {{{"nodes", {0}}}};
+     },
+     "scene 0, nodes: names a node that is below another (0)"},
+    {"line break in an attribute", [](GltfBuilder& g) { primitive(g)["attributes"]["A\nB"] = 9; },
+     "mesh 0, primitive 0, attribute A\\nB: points past the end, there are 2 (9)"},
+    {"line break in alphaMode",
+     [](GltfBuilder& g) {
+       g.json["materials"] = {{{"alphaMode", "X\nY"}}};
+       primitive(g)["material"] = 0;
+     },
+     "material 0, alphaMode: is not OPAQUE, MASK or BLEND (X\\nY)"},
+    {"control characters in a name",
+     [](GltfBuilder& g) {
+       g.json["nodes"][0]["name"] = "x\x1b[31m\x7f\u0085\u2028\u00e9";
+       g.json["nodes"][0]["mesh"] = 7;
+     },
+     "node 0 'x\\u001b[31m\\u007f\\u0085\\u2028\u00e9', mesh: points past the end, there are 1 (7)"},
+    {"emissive beyond a pack",
+     [](GltfBuilder& g) {
+       g.json["materials"] = {{{"emissiveFactor", {0, 2e6, 0}},
+                               {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e9}}}}}}};
+       primitive(g)["material"] = 0;
+     },
+     "material 0, emissiveFactor: times emissiveStrength is above 1e+12 (2e+15)"},
+    {"colour of a light beyond a pack",
+     [](GltfBuilder& g) {
+       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"color", {0, 2e6, 0}}}};
+     },
+     "light 0, color: is out of range (2000000.0)"},
+    {"intensity of a light beyond a pack",
+     [](GltfBuilder& g) {
+       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 2e12}}};
+     },
+     "light 0, intensity: is out of range (2000000000000.0)"},
+    {"unknown camera",
+     [](GltfBuilder& g) {
+       g.json["cameras"] = {{{"type", "fisheye"}}};
+     },
+     "camera 0, type: is not a camera type (\"fisheye\")"},
+    {"orthographic camera without its numbers",
+     [](GltfBuilder& g) {
+       g.json["cameras"] = {{{"type", "orthographic"}}};
+     },
+     "camera 0: has no orthographic"},
     {"count beyond 32 bits", [](GltfBuilder& g) { g.json["accessors"][0]["count"] = 4294967295; },
      "accessor 0, count: is out of range (4294967295)"},
     {"count that is no number", [](GltfBuilder& g) { g.json["accessors"][0]["count"] = "3"; },
@@ -249,6 +321,7 @@ TEST(BadInput, IsNamedWhereABufferCannotBeRead) {
   EXPECT_EQ(buffer_error("file:///etc/hostname"), "buffer 0: URI is not relative to the file (file:///etc/hostname)");
   EXPECT_EQ(buffer_error("/etc/hostname"), "buffer 0: URI is not relative to the file (/etc/hostname)");
   EXPECT_EQ(buffer_error(""), "buffer 0: URI names no file ()");
+  EXPECT_EQ(buffer_error("a%0Ab.bin"), "buffer 0: no such file (" + (scratch_folder() / "a").string() + "\\nb.bin)");
   EXPECT_EQ(buffer_error("a%00b"), "buffer 0: URI names no file (a%00b)");
   EXPECT_EQ(buffer_error("data:application/octet-stream;base64,AAAA"),
             "buffer 0: is shorter than its byteLength 42 (3 bytes)");
@@ -273,6 +346,8 @@ TEST(BadInput, IsNamedWhereAnImageCannotBeRead) {
             "image 0 (gone.png): no such file (" + (scratch_folder() / "gone.png").string() + ")");
   write_bytes(scratch_folder() / "text.png", "no picture");
   EXPECT_EQ(error({{"uri", "text.png"}}), "image 0 (text.png): is neither PNG nor JPEG (10 bytes)");
+  EXPECT_EQ(error({{"uri", "a\nb.png"}}),
+            "image 0 (a\\nb.png): no such file (" + (scratch_folder() / "a").string() + "\\nb.png)");
   EXPECT_EQ(error({{"bufferView", 7}}), "image 0, bufferView: points past the end, there are 2 (7)");
 }
 
@@ -286,6 +361,24 @@ TEST(BadInput, OnlyWarnsOfUnknownExtensionsThatAreOptional) {
             std::string::npos);
 }
 
+TEST(BadInput, IsWarnedOfInOneLineWithAFewNames) {
+  GltfBuilder gltf = one_triangle();
+  for (int i = 0; i < 100000; ++i) gltf.json["extensionsUsed"].push_back("E" + std::to_string(i));
+  Warnings warnings;
+  const std::filesystem::path path = gltf.save("many");
+  Scene scene;
+  import_gltf(path, scene, warnings);
+  EXPECT_EQ(warnings.lines(),
+            std::vector<std::string>{path.string() +
+                                     ": extensionsUsed: unknown extension is ignored (E0, E1, E2 and 99997 more)"});
+}
+
+TEST(Message, IsCutBetweenCharacters) {
+  EXPECT_EQ(shortened("\u00e9\u00e9", 4), "\u00e9\u00e9");
+  EXPECT_EQ(shortened("\u00e9\u00e9\u00e9\u00e9", 6), "\u00e9...");  // the second would end at byte 4
+  EXPECT_EQ(printable("a\xff\xc3"), "a\\xff\\xc3");
+}
+
 TEST(BadInput, IsWarnedOfOnceHoweverOftenItOccurs) {
   GltfBuilder gltf = one_triangle();
   gltf.json["nodes"][0]["scale"] = {0, 0, 0};
@@ -293,7 +386,7 @@ TEST(BadInput, IsWarnedOfOnceHoweverOftenItOccurs) {
   Warnings warnings;
   gltf.import(&warnings);
   ASSERT_EQ(warnings.lines().size(), 1u);
-  EXPECT_NE(warnings.lines()[0].find("node 0 'triangle' (and 9 more): a mesh under zero scale"), std::string::npos);
+  EXPECT_NE(warnings.lines()[0].find("node 0 'triangle' (and 9 more): a mesh whose scale is zero"), std::string::npos);
 }
 
 }  // namespace

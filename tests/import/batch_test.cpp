@@ -123,6 +123,30 @@ TEST(Batches, AreSmallInSpace) {
   EXPECT_LT(area, 3 * 1600);
 }
 
+TEST(Batches, AreMadeOfAFanInReasonableTime) {
+  // 100 000 triangles around one vertex: not a matter of half a minute, and the batches are full.
+  constexpr int kTriangles = 100000;
+  std::vector<float> positions = {0, 0, 0}, normals = {0, 0, 1};
+  for (int i = 0; i <= kTriangles; ++i) {
+    const double angle = 2 * M_PI * i / kTriangles;
+    positions.insert(positions.end(), {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
+    normals.insert(normals.end(), {0, 0, 1});
+  }
+  GltfBuilder gltf;
+  const int position = gltf.add_positions(positions), normal = gltf.add_positions(normals);
+  gltf.add_mesh({{"mode", 6}, {"attributes", {{"POSITION", position}, {"NORMAL", normal}}}});
+  gltf.add_node({{"mesh", 0}});
+  const pack::Contents pack = gltf.bake();
+  EXPECT_EQ(pack.indices.size(), 3u * kTriangles);
+  EXPECT_LE(pack.batches.size(), 1010u);
+  float area = 0;  // of pieces of the rim: about a thousand boxes of a slice each, not of the whole disc
+  for (const pack::Batch& batch : pack.batches) {
+    const glm::vec3 size = batch.bounds_max_ls - batch.bounds_min_ls;
+    area += size.x * size.y;
+  }
+  EXPECT_LT(area, 0.5f * static_cast<float>(pack.batches.size()));
+}
+
 TEST(Batches, LoseNothingWhereDistancesOverflow) {
   GltfBuilder gltf = one_triangle();
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
@@ -162,6 +186,36 @@ TEST(BatchInstances, HaveBoxesOfTheirVerticesNotOfTurnedBoxes) {
   EXPECT_NEAR(draw.bounds_max_ws.x, r, 1e-6);
   EXPECT_NEAR(draw.bounds_max_ws.y, r, 1e-6);
   EXPECT_EQ(pack.bake_info.bounds_max_ws, draw.bounds_max_ws);
+}
+
+TEST(BatchInstances, HaveBoxesThatHoldEachVertexExactly) {
+  GltfBuilder gltf = sheet(12);
+  gltf.json["nodes"][0] = {{"mesh", 0}, {"rotation", {0.1, 0.2, 0.3, 0.9}}, {"translation", {1e5, -3e4, 7}}};
+  const pack::Contents pack = gltf.bake();
+  for (const pack::BatchInstance& draw : pack.batch_instances) {
+    const pack::Batch& batch = pack.batches[draw.batch];
+    const pack::Instance& instance = pack.instances[draw.instance];
+    for (std::uint32_t i = 0; i < batch.index_count; ++i) {
+      const glm::dvec4 p(pack.positions[pack.indices[batch.first_index + i].vertex].position_ls, 1);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double world = glm::dot(glm::dvec4(instance.world_from_local[axis]), p);
+        EXPECT_LE(draw.bounds_min_ws[axis], world);
+        EXPECT_GE(draw.bounds_max_ws[axis], world);
+      }
+    }
+  }
+}
+
+TEST(BatchInstances, AreRefusedByNumberBeforeTheyTakeMemory) {
+  Scene scene = sheet(100).import();
+  const MeshInstance instance = scene.instances[0];
+  scene.instances.assign(100000, instance);  // of 5000 batches of 4 triangles or more
+  try {
+    baker::bake(std::move(scene), {.batch_triangles = 4}, Progress(false));
+    FAIL() << "baked";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("batches (2684"), std::string::npos) << error.what();
+  }
 }
 
 TEST(BatchInstances, AreSortedOpaqueFirstThenByMaterial) {

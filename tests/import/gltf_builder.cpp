@@ -61,7 +61,7 @@ Scene GltfBuilder::import(Warnings* warnings) const {
 }
 
 pack::Contents GltfBuilder::bake(const BakeSettings& settings) const {
-  return baker::bake(import(), settings, Progress(true));
+  return baker::bake(import(), settings, Progress(false));
 }
 
 GltfBuilder one_triangle() {
@@ -77,7 +77,7 @@ std::string error_of(const std::filesystem::path& path) {
     Scene scene;
     Warnings warnings;
     import_gltf(path, scene, warnings);
-    baker::bake(std::move(scene), {}, Progress(true));
+    baker::bake(std::move(scene), {}, Progress(false));
   } catch (const Error& error) {
     return error.what();
   }

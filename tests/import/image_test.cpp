@@ -104,6 +104,14 @@ TEST(Decode, ReadsJpegWithRowsFromTheTop) {
   EXPECT_LT(texels.rgba[texels.rgba.size() - 4], 15);
 }
 
+/// Bytes that do not compress.
+Bytes noise(std::size_t count) {
+  Bytes out;
+  for (std::uint32_t x = 1; out.size() < count; x = x * 1664525u + 1013904223u)
+    out.push_back(static_cast<std::uint8_t>(x >> 24));
+  return out;
+}
+
 std::string decode_error(const EncodedImage& image) {
   try {
     decode_image(image);
@@ -128,7 +136,19 @@ TEST(Decode, RefusesWhatItCannotDecode) {
   EXPECT_EQ(decode_error(cut), "test: image: PNG is cut short (5 bytes)");
   EncodedImage cut_jpeg = encoded("jpg", 64, 64, 3, Bytes(64 * 64 * 3, 77));
   cut_jpeg.bytes.resize(40);
-  EXPECT_EQ(decode_error(cut_jpeg).rfind("test: image: cannot be decoded", 0), 0u) << decode_error(cut_jpeg);
+  EXPECT_EQ(decode_error(cut_jpeg), "test: image: JPEG is cut short (40 bytes)");
+  const EncodedImage whole_jpeg = encoded("jpg", 64, 64, 3, noise(64 * 64 * 3));
+  EXPECT_EQ(decode_error(whole_jpeg), "");
+  EncodedImage padded = whole_jpeg;
+  padded.bytes.insert(padded.bytes.end(), 7, 0);
+  EXPECT_EQ(decode_error(padded), "");
+  cut_jpeg = whole_jpeg;
+  cut_jpeg.bytes.resize(whole_jpeg.bytes.size() / 2);
+  const std::string size = std::to_string(cut_jpeg.bytes.size());
+  EXPECT_EQ(decode_error(cut_jpeg), "test: image: JPEG is cut short (" + size + " bytes)");
+  EncodedImage short_scan = cut_jpeg;  // ends as a JPEG does, but has half of its blocks
+  short_scan.bytes.insert(short_scan.bytes.end(), {0xFF, 0xD9});
+  EXPECT_EQ(decode_error(short_scan).rfind("test: image: cannot be decoded: ", 0), 0u) << decode_error(short_scan);
   const EncodedImage wide = encoded("png", 16385, 1, 1, Bytes(16385, 0));
   EXPECT_EQ(decode_error(wide), "test: image: size is out of range, 1 to 16384 (16385x1)");
 }

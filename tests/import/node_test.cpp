@@ -81,22 +81,31 @@ TEST(Node, KeepsFrontFacesCounterClockwiseUnderNegativeScale) {
   EXPECT_EQ(pack.batch_instances[1].batch, pack.batch_instances[2].batch);
 }
 
-TEST(Node, SkipsMeshesUnderZeroScaleWithAWarning) {
-  for (const Json& scale : {Json{0, 0, 0}, Json{1, 0, 1}}) {
+TEST(Node, SkipsMeshesUnderScalesThatFloatsCannotDraw) {
+  for (const Json& scale : {Json{0, 0, 0}, Json{1, 0, 1}, Json{1e-10, 1e-10, 1e-10}, Json{1, 1, 1e10}}) {
     GltfBuilder gltf = one_triangle();
     gltf.json["nodes"][0]["scale"] = scale;
     Warnings warnings;
     EXPECT_TRUE(gltf.import(&warnings).instances.empty());
     ASSERT_EQ(warnings.lines().size(), 1u);
-    EXPECT_NE(warnings.lines()[0].find("node 0 'triangle': a mesh under zero scale is skipped"), std::string::npos);
+    EXPECT_NE(
+        warnings.lines()[0].find("node 0 'triangle': a mesh whose scale is zero or not within 1e-9 to 1e9 is skipped"),
+        std::string::npos);
   }
 }
 
 TEST(Node, BakesSmallAndUnevenScales) {
   GltfBuilder gltf = one_triangle();
-  gltf.json["nodes"][0]["scale"] = {1e-4, 1e-4, 1e-4};
+  gltf.json["nodes"][0]["scale"] = {1e-9, 1e-9, 1e-9};
   gltf.add_node({{"mesh", 0}, {"scale", {1000, 1, 0.01}}});
-  EXPECT_EQ(gltf.import().instances.size(), 2u);
+  gltf.add_node({{"mesh", 0}, {"scale", {1e9, 1e9, 1e9}}});
+  const pack::Contents pack = gltf.bake();
+  ASSERT_EQ(pack.batch_instances.size(), 3u);
+  const glm::vec3 corners[] = {{1e-9f, 1e-9f, 0}, {1000, 1, 0}, {1e9f, 1e9f, 0}};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(pack.batch_instances[i].bounds_min_ws, glm::vec3(0));
+    EXPECT_EQ(pack.batch_instances[i].bounds_max_ws, corners[i]) << i;
+  }
 }
 
 TEST(Node, ShowsTheDefaultSceneTheFirstOrAllRoots) {
