@@ -8,6 +8,7 @@ import argparse
 import json
 import math
 import os
+import pathlib
 import struct
 import zlib
 
@@ -186,6 +187,7 @@ def main(make, description):
             file.write(data)
         os.replace(temporary, options.output)
     except OSError as error:
+        pathlib.Path(temporary).unlink(missing_ok=True)
         parser.exit(1, f"{parser.prog}: error: {options.output}: {error.strerror}\n")
     lights = document.json.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", [])
     print(f"{options.output}: {document.triangles} triangles, {len(lights)} lights, {len(data) / 1e6:.1f} MB")

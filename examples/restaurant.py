@@ -34,7 +34,7 @@ def materials(doc):
                                       normal=doc.add_texture(textures.normal_map(boards_height[::2, ::2], 2))),
             "wood": doc.add_material("Walnut", texture=doc.add_texture(wood), tile_m=0.6, roughness=0.4),
             "plaster": doc.add_material("Plaster", texture=plaster, tile_m=1.5, roughness=0.95),
-            "cloth": doc.add_material("Table cloth", color=(0.82, 0.8, 0.74), roughness=0.95),
+            "cloth": doc.add_material("Table cloth", color=(0.82, 0.8, 0.74), roughness=0.95, double_sided=True),
             "china": doc.add_material("China", color=(0.9, 0.9, 0.88), roughness=0.15),
             "glass": doc.add_material("Green glass", color=(0.06, 0.2, 0.1), roughness=0.08),
             "brass": doc.add_material("Brass", color=(0.87, 0.62, 0.26), roughness=0.3, metallic=1.0),
@@ -185,7 +185,7 @@ def chandelier(doc, mat):
 
 
 def wall_lamps(doc, mat):
-    """Lamps whose shade is a half cone, open above and below, in front of the light; origin: the light."""
+    """Brass arms that hold a bare bulb under the light; origin: the light."""
     brass = [sweep([(0, -0.1, -0.12), (0, -0.12, -0.06), (0, -0.1, -0.01), (0, -0.06, 0)], 0.007, 8),
              lathe([(0.04, 0), (0.04, 0.012), (0.02, 0.02), (0, 0.02)], 20).turned("x", 90).moved(y=-0.1, z=-0.12),
              lathe([(0, -0.065), (0.018, -0.06), (0.018, -0.05), (0, -0.05)], 14)]

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """80 lights and three cameras, and no meshes, for Crytek's Sponza as Khronos gives it (metres, court along x).
 
-Bake both together: `chandelier-bake crytek_sponza.gltf rig.glb -o sponza.chandelier`. Ten circles of eight hang in the
-court, one before each arch of the two arcades: from there they light court and banners, and columns and curtains throw
-their shadows into the aisles.
+Bake both together: `chandelier-bake crytek_sponza.gltf rig.glb -o sponza.chandelier`. Ten circles of eight hang at five
+bays on both sides, in turns in the court before an arch, from where they light court and banners, and in the aisle behind
+it, from where columns and curtains throw their shadows into the court.
 """
 
 import math

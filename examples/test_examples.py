@@ -98,6 +98,13 @@ class Scenes(unittest.TestCase):
         self.assertEqual(result.stderr.count("\n"), 1)
         self.assertIn("folder.glb: No such file", result.stderr)
 
+    def test_a_failed_write_leaves_nothing_behind(self):
+        with tempfile.TemporaryDirectory() as folder:
+            output = os.path.join(folder, "is_a_folder.glb")
+            os.mkdir(output)
+            self.assertEqual(run("cornell", output).returncode, 1)
+            self.assertEqual(os.listdir(folder), ["is_a_folder.glb"])
+
 
 class InData(unittest.TestCase):
     """What the scripts and cameras say about scenes that are not in this repository."""

@@ -5,8 +5,8 @@ import numpy as np
 
 
 def nearest_distance(point, triangles, within=1.0):
-    """triangles: an array (n, 3, 3). The distance, or `within` where no triangle is nearer. Ericson, Real-Time Collision Detection 5.1.5, as: the plane where the foot falls
-    inside the triangle, and the three edges otherwise."""
+    """triangles: an array (n, 3, 3). The distance, or `within` where no triangle is nearer. Ericson, Real-Time Collision
+    Detection 5.1.5, as: the plane where the foot falls inside the triangle, and the three edges otherwise."""
     point = np.asarray(point, dtype=float)
     near = (triangles.min(axis=1) < point + within).all(axis=1) & (triangles.max(axis=1) > point - within).all(axis=1)
     triangles = triangles[near]
