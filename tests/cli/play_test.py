@@ -18,6 +18,9 @@ import unittest
 import jsonschema
 import numpy
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from pictures import read_pfm
+
 SOURCE = pathlib.Path(os.environ["CHANDELIER_SOURCE"])
 PLAY = os.environ["CHANDELIER_PLAY"]
 BAKE = os.environ["CHANDELIER_BAKE"]
@@ -32,14 +35,6 @@ def schema_validator(name):
     jsonschema.Draft202012Validator.check_schema(schemas[name])
     resolver = jsonschema.RefResolver(name, schemas[name], store=schemas)
     return jsonschema.Draft202012Validator(schemas[name], resolver=resolver)
-
-
-def read_pfm(path):
-    with open(path, "rb") as file:
-        assert file.readline() == b"PF\n"
-        width, height = map(int, file.readline().split())
-        assert float(file.readline()) == -1.0
-        return numpy.frombuffer(file.read(), "<f4").reshape(height, width, 3)[::-1]
 
 
 def png_size(path):

@@ -14,6 +14,9 @@ import unittest
 import numpy
 import PIL.Image
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from pictures import read_pfm
+
 SOURCE = pathlib.Path(os.environ["CHANDELIER_SOURCE"])
 DATA = pathlib.Path(os.environ["CHANDELIER_DATA"])
 PLAY = os.environ["CHANDELIER_PLAY"]
@@ -31,14 +34,6 @@ def run(*command):
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
     if done.returncode != 0:
         raise AssertionError(f"{' '.join(map(str, command))}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
-
-
-def read_pfm(path):
-    with open(path, "rb") as file:
-        assert file.readline() == b"PF\n"
-        width, height = map(int, file.readline().split())
-        assert float(file.readline()) == -1.0
-        return numpy.frombuffer(file.read(), "<f4").reshape(height, width, 3)[::-1]
 
 
 def play(pack, *options):
@@ -123,6 +118,25 @@ class Sponza(SceneTest):
             found = compare(pack, "--d-init", "0", "--filter", picture_filter)
             self.assertEqual(found["max_error"], {"linear": 0.0, "shown": 0.0}, picture_filter)
             self.assertEqual(found["b"]["counters"]["light_clusters"], 80)
+
+    def test_the_hall_is_upright_textured_lit_and_shadowed(self):
+        """What camera `hall` must show: red curtain left, green one right, bright floor below, dark roof above."""
+        _, radiance = play(self.bake(), "--camera", "hall")
+        height, width, _ = radiance.shape
+
+        def middle(left, right, top, bottom):
+            part = radiance[int(top * height):int(bottom * height), int(left * width):int(right * width)]
+            return numpy.median(part, axis=(0, 1))
+
+        red, green = middle(0.18, 0.22, 0.4, 0.75), middle(0.75, 0.78, 0.45, 0.75)
+        self.assertGreater(red[0], 2 * red[1])
+        self.assertGreater(green[1], 1.5 * green[0])
+        floor, roof = middle(0.35, 0.6, 0.85, 0.98), middle(0.45, 0.55, 0.02, 0.1)
+        self.assertGreater(floor.mean(), 20 * roof.mean())
+        # Behind the railing of the upper floor no lamp reaches: range ends, or the floor is in between.
+        dark = (radiance.max(axis=2) == 0.0).mean()
+        self.assertGreater(dark, 0.01)
+        self.assertLess(dark, 0.4)
 
     def test_clusters_need_fewer_maps_and_stay_close(self):
         found = compare(self.bake())
