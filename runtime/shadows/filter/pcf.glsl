@@ -23,9 +23,9 @@ mat2x3 receiver_axes(vec3 n, vec2 pixel) {
 }
 
 // A disc light of radius R casts a penumbra of radius R * (distance to receiver / distance to blocker - 1). PCF knows no
-// blocker. 0.15 is what came nearest to the reference on the example scenes (README.md of this folder); it fits a disc of
-// half d_min, where the members lie on average, and a blocker three quarters of the way along.
-const float PENUMBRA_PER_D_MIN = 0.15;
+// blocker. 0.08 is what came nearest to the reference on the example scenes (README.md of runtime/shadows); it fits a disc
+// of half d_min, where the members lie on average, and a blocker six sevenths of the way along.
+const float PENUMBRA_PER_D_MIN = 0.08;
 
 float pcf_radius(ShadowMap map, vec3 p) {
   return max(SMOOTHING_TEXELS * texel_size(map, p), min(PENUMBRA_PER_D_MIN * map.filter_radius_m, 0.5 * distance(p, map.center_ws)));
