@@ -31,6 +31,14 @@ float pcf_radius(ShadowMap map, vec3 p) {
   return max(SMOOTHING_TEXELS * texel_size(map, p), min(PENUMBRA_PER_D_MIN * map.filter_radius_m, 0.5 * distance(p, map.center_ws)));
 }
 
+// One tap, at q in the plane of receiver p. It is moved off the surface by itself: it may fall on another face, at another
+// slope, than p does. And it is compared no farther away than p: what is farther cannot shadow p, though in a concave
+// corner it may stand before q.
+float cube_tap(ShadowMap map, vec3 p, vec3 q, vec3 n, float texels) {
+  vec3 d = offset_from_surface(map, q, n, texels) - map.center_ws;
+  return cube_lit(map, map.center_ws + d * min(1.0, distance(p, map.center_ws) * inversesqrt(dot(d, d))));
+}
+
 float pcf_visibility(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
   const float texels = 1.5;  // bilinear comparison reads texels whose centres are up to a diagonal away
   mat2x3 axes = receiver_axes(n, pixel);
@@ -42,9 +50,7 @@ float pcf_visibility(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
     for (uint i = 0u; i < POISSON_TAPS; ++i) lit += cascade_lit(cascade, p + axes * POISSON_DISC[i]);
   } else {
     axes *= pcf_radius(map, p);
-    // Each tap by itself: it may fall on another face, at another slope, than p does.
-    for (uint i = 0u; i < POISSON_TAPS; ++i)
-      lit += cube_lit(map, offset_from_surface(map, p + axes * POISSON_DISC[i], n, texels));
+    for (uint i = 0u; i < POISSON_TAPS; ++i) lit += cube_tap(map, p, p + axes * POISSON_DISC[i], n, texels);
   }
   return lit / float(POISSON_TAPS);
 }
