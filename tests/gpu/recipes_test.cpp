@@ -190,6 +190,33 @@ TEST_F(RecipesTest, MoreLightsThanACubeArrayHolds) {
   EXPECT_NEAR(brightness(all.picture), sums[0] + sums[1], 1e-5 * brightness(all.picture));
 }
 
+TEST_F(RecipesTest, StagesAreTimedHoweverManyRoundsThereAre) {
+  Renderer renderer(device(), small_room(800).open());
+  RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
+  settings.width = settings.height = 16;
+  settings.recipe.face_size_px = 16;
+  settings.recipe.shadow_budget_bytes = 1;
+  const FrameStats stats = renderer.draw(settings);
+  EXPECT_GT(stats.shadow_rounds, 700u);
+  EXPECT_EQ(stats.shadow_pool_bytes, cube_bytes(16));
+  EXPECT_EQ(stats.stages.back().name, "tone-map");
+  EXPECT_GT(stats.stages.back().gpu_ms, 0.0);
+}
+
+TEST_F(RecipesTest, WhatIsExposedTooLongIsWhite) {
+  Renderer renderer(device(), small_room(5).open());
+  RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
+  settings.exposure_ev = 75.0f;
+  const Picture picture = frame(renderer, settings).picture;
+  size_t lit = 0;
+  for (size_t i = 0; i < picture.radiance.size(); ++i) {
+    if (i % 4 == 3 || picture.radiance[i] < 1e-6f) continue;
+    ++lit;
+    ASSERT_EQ(picture.shown[i], 255) << "channel " << i << ", radiance " << picture.radiance[i];
+  }
+  EXPECT_GT(lit, 10000u);
+}
+
 TEST_F(RecipesTest, NoLightsLeaveBlackAndAmbient) {
   Scene scene = small_room(0);
   scene.lights.clear();
