@@ -70,8 +70,9 @@ void run(const baker::Options& options) {
     with_memory_for(input.string(), [&] { baker::import_gltf(input, scene, warnings); });
   }
   refuse_overwriting_an_input(scene.files_read, options.output);
-  const pack::Contents pack =
-      with_memory_for("scene", [&] { return baker::bake(std::move(scene), options.bake, progress); });
+  baker::Report report;
+  const pack::Contents pack = with_memory_for(
+      "scene", [&] { return baker::bake(std::move(scene), options.bake, progress, report, warnings); });
   progress.next("writing " + options.output.string());
   pack::write(options.output, pack);
   for (const std::string& line : warnings.lines()) fmt::print(stderr, "chandelier-bake: warning: {}\n", line);

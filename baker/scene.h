@@ -3,6 +3,7 @@
 // Right-handed, +Y up, metres; uv v points down; front faces are counter-clockwise.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -25,10 +26,18 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 60);
 
+/// Joints and weights of a vertex, as the pack has them.
+struct SkinVertex {
+  std::array<std::uint16_t, 4> joints{};   // numbers among the skin's joints
+  std::array<std::uint16_t, 4> weights{};  // unorm, their sum 65535
+};
+
 struct Primitive {
   std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;  // a triangle list
+  std::vector<SkinVertex> skin_vertices;  // one per vertex, or none
+  std::vector<std::uint32_t> indices;     // a triangle list
   std::uint32_t material = 0;
+  bool needs_normals = false;   // the file has none
   bool needs_tangents = false;  // a normal map without tangents of its own
   bool tangents_from_uv1 = false;
 };
@@ -42,6 +51,8 @@ struct MeshInstance {
   std::string where;
   glm::dmat4 world_from_local{1};
   std::uint32_t mesh = 0;
+  std::uint32_t node = kNone;  // of Scene::nodes, where an animation or a skin moves it
+  std::uint32_t skin = kNone;
 };
 
 enum class Wrap { repeat, clamp_to_edge, mirrored_repeat };
@@ -62,9 +73,14 @@ struct Texture {
   Filter min_filter = Filter::linear;
 };
 
+/// Rows of a 2×3 matrix from a mesh's uv to an image's (KHR_texture_transform).
+using UvTransform = std::array<glm::vec3, 2>;
+constexpr UvTransform kUvIdentity = {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
+
 struct TextureUse {
   std::uint32_t texture = kNone;
   bool uv1 = false;
+  UvTransform uv_transform = kUvIdentity;
 };
 
 struct Material {
@@ -79,6 +95,7 @@ struct Material {
   TextureUse base_color, metallic_roughness, normal, occlusion, emissive_map;
   bool masked = false;
   bool double_sided = false;
+  bool unlit = false;
 };
 
 enum class LightType { point, spot, directional };
@@ -93,6 +110,12 @@ struct Light {
   std::optional<float> range_m;    // as authored
   float inner_cone_rad = 0;        // spot only
   float outer_cone_rad = 0.7854f;  // spot only
+  std::string where;               // for messages: file and node
+  std::uint32_t node = kNone;      // of Scene::nodes, where an animation moves it
+  std::optional<float> power_w;    // as its author gave it, where extras say so (light_extras.schema.json)
+  std::uint32_t priority = 128;    // 0 to 255
+  bool dynamic = false;
+  bool unclustered = false;
 };
 
 struct Camera {
@@ -103,6 +126,43 @@ struct Camera {
   float yfov_rad = 0.8f;
   float aspect = 0;  // width over height; 0: the picture's own
   float znear_m = 0.1f;
+  std::uint32_t node = kNone;  // of Scene::nodes, where an animation moves it
+};
+
+/// A node that moves, or that one hangs from. Parents come before their children.
+struct Node {
+  std::string name;
+  std::uint32_t parent = kNone;
+  glm::dmat4 parent_from_local{1};
+  glm::vec3 translation{0};
+  glm::vec4 rotation{0, 0, 0, 1};  // unit quaternion x, y, z, w
+  glm::vec3 scale{1};
+};
+
+enum class AnimationPath { translation, rotation, scale };
+enum class Interpolation { linear, step, cubic_spline };
+
+struct AnimationChannel {
+  std::uint32_t node = 0;
+  AnimationPath path = AnimationPath::translation;
+  Interpolation interpolation = Interpolation::linear;
+  std::vector<float> times_s;  // ascending
+  std::vector<float> values;   // key after key
+};
+
+struct Animation {
+  std::string name;
+  std::vector<AnimationChannel> channels;
+};
+
+struct Joint {
+  std::uint32_t node = 0;
+  glm::mat4 joint_from_bind{1};
+};
+
+struct Skin {
+  std::string name;
+  std::vector<Joint> joints;
 };
 
 struct Scene {
@@ -115,6 +175,9 @@ struct Scene {
   std::vector<EncodedImage> images;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
+  std::vector<Node> nodes;
+  std::vector<Animation> animations;
+  std::vector<Skin> skins;
 };
 
 }  // namespace chandelier::baker

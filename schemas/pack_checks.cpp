@@ -96,10 +96,16 @@ std::string first_fault(const char* section, std::span<const Record> records) {
 }  // namespace
 
 std::uint64_t image_bytes(const Image& image) {
-  constexpr std::uint64_t texel_bytes = 4;  // both formats are RGBA8
+  const bool blocks = image.format != ImageFormat::rgba8_srgb && image.format != ImageFormat::rgba8_unorm;
+  const bool small_blocks = image.format == ImageFormat::bc1_srgb || image.format == ImageFormat::bc1_unorm;
+  const std::uint64_t unit_bytes = !blocks ? 4 : small_blocks ? 8 : 16;  // of a texel or a block of 4×4
+  const auto units = [&](std::uint32_t size, std::uint32_t level) {
+    const std::uint64_t texels = std::max(1u, size >> level);
+    return blocks ? (texels + 3) / 4 : texels;
+  };
   std::uint64_t bytes = 0;
   for (std::uint32_t level = 0; level < image.level_count; ++level) {
-    bytes += texel_bytes * std::max(1u, image.width >> level) * std::max(1u, image.height >> level);
+    bytes += unit_bytes * units(image.width, level) * units(image.height, level);
   }
   return bytes;
 }

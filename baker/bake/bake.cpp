@@ -2,6 +2,8 @@
 // The passes in their order.
 #include "bake.h"
 
+#include <span>
+
 #include "../error.h"
 #include "batches.h"
 #include "images.h"
@@ -30,20 +32,46 @@ void describe(const Scene& scene, const BakeSettings& settings, Strings& strings
   info.source = strings.add(sources);
 }
 
+template <typename... Records>
+std::uint64_t bytes_of(const std::vector<Records>&... sections) {
+  return (std::span(sections).size_bytes() + ...);
+}
+
 }  // namespace
 
-pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress) {
+pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
+                    [[maybe_unused]] Warnings& warnings) {
   pack::Contents pack;
   Strings strings(pack.strings);
-  const std::vector<MeshBatches> meshes = make_batches(scene, settings.batch_triangles, progress, pack);
-  const std::vector<ImageRequest> requests = make_materials(scene, strings, pack);
-  make_instances(scene, meshes, strings, pack);
-  make_images(scene, requests, progress, strings, pack);
-  make_lights(scene, settings.range_threshold_lx, strings, pack);
+  std::vector<MeshRecords> meshes;
+  std::vector<ImageRequest> requests;
+  report.run("batches", [&](PassReport& pass) {
+    meshes = make_batches(scene, settings.batch_triangles, progress, pack);
+    pass.bytes = bytes_of(pack.positions, pack.vertex_attributes, pack.indices, pack.batches, pack.meshes);
+    pass.count("batches", static_cast<double>(pack.batches.size()));
+  });
+  report.run("materials", [&](PassReport& pass) {
+    requests = make_materials(scene, strings, pack);
+    pass.bytes = bytes_of(pack.materials, pack.textures);
+  });
+  report.run("instances", [&](PassReport& pass) {
+    make_instances(scene, meshes, strings, pack);
+    pass.bytes = bytes_of(pack.instances, pack.batch_instances);
+  });
+  report.run("images", [&](PassReport& pass) {
+    make_images(scene, requests, progress, strings, pack);
+    pass.bytes = bytes_of(pack.images, pack.image_data);
+  });
+  report.run("lights", [&](PassReport& pass) {
+    make_lights(scene, settings.range_threshold_lx, strings, pack);
+    pass.bytes = bytes_of(pack.lights);
+  });
   make_cameras(scene, strings, pack);
   describe(scene, settings, strings, pack);
-  const std::string fault = pack::check(pack::view_of(pack));
-  if (!fault.empty()) fail("scene", "cannot be stored in a pack: " + fault);
+  report.run("check", [&](PassReport&) {
+    const std::string fault = pack::check(pack::view_of(pack));
+    if (!fault.empty()) fail("scene", "cannot be stored in a pack: " + fault);
+  });
   return pack;
 }
 

@@ -2,7 +2,9 @@
 // The bake: scene in, pack out.
 #pragma once
 
+#include "../error.h"
 #include "../progress.h"
+#include "../report.h"
 #include "../scene.h"
 #include "pack_schema.h"
 
@@ -13,7 +15,9 @@ struct BakeSettings {
   float range_threshold_lx = 0.05f;     // where a light without a range of its own ends
 };
 
-/// Runs all passes. Same scene and settings, same contents, whatever the number of threads. Throws Error.
-pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress);
+/// Runs all passes, and notes each in `report`. Same scene and settings, same contents, whatever the number of threads.
+/// Throws Error.
+pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
+                    Warnings& warnings);
 
 }  // namespace chandelier::baker

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "../error.h"
+#include "octahedral.h"
 #include "tangents.h"
 #include "weld.h"
 
@@ -99,7 +100,8 @@ CutPrimitive cut(Primitive&& primitive, std::size_t batch_triangles) {
 void append_vertices(const std::vector<Vertex>& vertices, pack::Contents& pack) {
   for (const Vertex& vertex : vertices) {
     pack.positions.push_back({vertex.position_ls});
-    pack.vertex_attributes.push_back({vertex.normal_ls, vertex.tangent_ls, vertex.uv0, vertex.uv1, vertex.color});
+    pack.vertex_attributes.push_back({pack::encode_normal(vertex.normal_ls), pack::encode_tangent(vertex.tangent_ls),
+                                      vertex.uv0, vertex.uv1, vertex.color});
   }
 }
 
@@ -111,6 +113,7 @@ void append_batches(const CutPrimitive& cut, std::uint32_t first_vertex, bool mi
     batch.material = cut.material;
     batch.first_index = static_cast<std::uint32_t>(pack.indices.size());
     batch.index_count = triangles * 3;
+    batch.cone_cutoff = 1;
     batch.bounds_min_ls = batch.bounds_max_ls = cut.vertices[*corner].position_ls;
     for (std::uint32_t t = 0; t < triangles; ++t, corner += 3) {
       for (const int c : {0, mirrored ? 2 : 1, mirrored ? 1 : 2}) {
@@ -122,6 +125,12 @@ void append_batches(const CutPrimitive& cut, std::uint32_t first_vertex, bool mi
     }
     pack.batches.push_back(batch);
   }
+}
+
+void include(const pack::Batch& batch, pack::Mesh& mesh) {
+  const bool first = mesh.batch_count++ == 0;
+  mesh.bounds_min_ls = first ? batch.bounds_min_ls : glm::min(mesh.bounds_min_ls, batch.bounds_min_ls);
+  mesh.bounds_max_ls = first ? batch.bounds_max_ls : glm::max(mesh.bounds_max_ls, batch.bounds_max_ls);
 }
 
 struct MeshUse {
@@ -143,7 +152,7 @@ bool is_mirrored(const MeshInstance& instance) {
   return glm::determinant(glm::dmat3(instance.world_from_local)) < 0;
 }
 
-std::vector<MeshBatches> make_batches(Scene& scene, std::uint32_t batch_triangles, const Progress& progress,
+std::vector<MeshRecords> make_batches(Scene& scene, std::uint32_t batch_triangles, const Progress& progress,
                                       pack::Contents& pack) {
   std::vector<Primitive*> primitives;
   for (Mesh& mesh : scene.meshes) {
@@ -155,25 +164,33 @@ std::vector<MeshBatches> make_batches(Scene& scene, std::uint32_t batch_triangle
                     [&](std::size_t i) { cuts[i] = cut(std::move(*primitives[i]), batch_triangles); });
 
   const std::vector<MeshUse> uses = mesh_uses(scene);
-  std::vector<MeshBatches> out(scene.meshes.size());
+  std::vector<MeshRecords> out(scene.meshes.size());
   std::size_t next = 0;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const std::size_t first_cut = next;
+    const auto first_vertex = static_cast<std::uint32_t>(pack.positions.size());
     std::vector<std::uint32_t> first_vertices;
     for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p, ++next) {
       first_vertices.push_back(static_cast<std::uint32_t>(pack.positions.size()));
       append_vertices(cuts[next].vertices, pack);
       fit_u32(pack.positions.size(), "vertices");
     }
+    pack::Mesh record;
+    record.first_vertex = first_vertex;
+    record.vertex_count = static_cast<std::uint32_t>(pack.positions.size()) - first_vertex;
     for (const bool mirrored : {false, true}) {
       if (!(mirrored ? uses[m].mirrored : uses[m].plain)) continue;
-      BatchRange& range = mirrored ? out[m].mirrored : out[m].plain;
-      range.first = static_cast<std::uint32_t>(pack.batches.size());
+      record.first_batch = static_cast<std::uint32_t>(pack.batches.size());
+      record.batch_count = 0;
       for (std::size_t i = first_cut; i < next; ++i) {
         fit_u32(pack.indices.size() + cuts[i].indices.size(), "triangle corners");
         append_batches(cuts[i], first_vertices[i - first_cut], mirrored, pack);
       }
-      range.count = fit_u32(pack.batches.size(), "batches") - range.first;
+      fit_u32(pack.batches.size(), "batches");
+      for (std::size_t b = record.first_batch; b < pack.batches.size(); ++b) include(pack.batches[b], record);
+      if (record.batch_count == 0) continue;
+      (mirrored ? out[m].mirrored : out[m].plain) = static_cast<std::uint32_t>(pack.meshes.size());
+      pack.meshes.push_back(record);
     }
     for (std::size_t i = first_cut; i < next; ++i) cuts[i] = {};
   }

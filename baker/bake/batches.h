@@ -8,23 +8,18 @@
 
 namespace chandelier::baker {
 
-/// Batches [first, first + count) of the pack.
-struct BatchRange {
-  std::uint32_t first = 0;
-  std::uint32_t count = 0;
-};
-
-/// A mesh's batches, as modelled and with its triangles' winding reversed; empty where no instance needs them.
-struct MeshBatches {
-  BatchRange plain;
-  BatchRange mirrored;
+/// Numbers of a scene mesh's records among the pack's meshes, as modelled and with its triangles' winding reversed; kNone
+/// where it has no triangles or no instance needs it.
+struct MeshRecords {
+  std::uint32_t plain = kNone;
+  std::uint32_t mirrored = kNone;
 };
 
 bool is_mirrored(const MeshInstance& instance);
 
-/// Fills positions, vertex_attributes, indices and batches; takes the meshes' vertices out of the scene. The result
+/// Fills positions, vertex_attributes, indices, batches and meshes; takes the meshes' vertices out of the scene. The result
 /// does not depend on the number of threads. Throws Error.
-std::vector<MeshBatches> make_batches(Scene& scene, std::uint32_t batch_triangles, const Progress& progress,
+std::vector<MeshRecords> make_batches(Scene& scene, std::uint32_t batch_triangles, const Progress& progress,
                                       pack::Contents& pack);
 
 }  // namespace chandelier::baker

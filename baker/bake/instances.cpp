@@ -13,12 +13,14 @@
 namespace chandelier::baker {
 namespace {
 
-BatchRange range_of(const MeshInstance& instance, const std::vector<MeshBatches>& meshes) {
+/// The number of the mesh's record in the pack, or kNone.
+std::uint32_t record_of(const MeshInstance& instance, const std::vector<MeshRecords>& meshes) {
   return is_mirrored(instance) ? meshes[instance.mesh].mirrored : meshes[instance.mesh].plain;
 }
 
-pack::Instance instance_record(const MeshInstance& instance, Strings& strings) {
+pack::Instance instance_record(const MeshInstance& instance, std::uint32_t mesh, Strings& strings) {
   pack::Instance out;
+  out.mesh = mesh;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
       out.world_from_local[row][column] = static_cast<float>(instance.world_from_local[column][row]);
@@ -68,11 +70,13 @@ void check_finite(const pack::BatchInstance& record, const std::string& where) {
 }
 
 /// A node costs a file few bytes, and each of its mesh's batches becomes a record: counted before any memory is taken.
-std::size_t count_batch_instances(const Scene& scene, const std::vector<MeshBatches>& meshes) {
+std::size_t count_batch_instances(const Scene& scene, const std::vector<MeshRecords>& meshes,
+                                  const pack::Contents& pack) {
   constexpr std::uint64_t kMost = 1ull << 28;
   std::uint64_t count = 0;
   for (const MeshInstance& instance : scene.instances) {
-    count += range_of(instance, meshes).count;
+    const std::uint32_t mesh = record_of(instance, meshes);
+    if (mesh != kNone) count += pack.meshes[mesh].batch_count;
     if (count > kMost) {
       fail(instance.where, "the instances up to here have more than " + std::to_string(kMost) + " batches (" +
                                std::to_string(count) + ")");
@@ -89,18 +93,18 @@ auto draw_order(const pack::Contents& pack, const pack::BatchInstance& record) {
 
 }  // namespace
 
-void make_instances(const Scene& scene, const std::vector<MeshBatches>& meshes, Strings& strings,
+void make_instances(const Scene& scene, const std::vector<MeshRecords>& meshes, Strings& strings,
                     pack::Contents& pack) {
-  pack.batch_instances.reserve(count_batch_instances(scene, meshes));
+  pack.batch_instances.reserve(count_batch_instances(scene, meshes, pack));
   std::vector<const MeshInstance*> sources;
   for (const MeshInstance& instance : scene.instances) {
-    const BatchRange range = range_of(instance, meshes);
-    if (range.count == 0) continue;
+    const std::uint32_t mesh = record_of(instance, meshes);
+    if (mesh == kNone) continue;
     const std::uint32_t number = fit_u32(pack.instances.size(), "instances");
-    pack.instances.push_back(instance_record(instance, strings));
+    pack.instances.push_back(instance_record(instance, mesh, strings));
     sources.push_back(&instance);
-    for (std::uint32_t b = 0; b < range.count; ++b) {
-      pack.batch_instances.push_back({.batch = range.first + b, .instance = number});
+    for (std::uint32_t b = 0; b < pack.meshes[mesh].batch_count; ++b) {
+      pack.batch_instances.push_back({.batch = pack.meshes[mesh].first_batch + b, .instance = number});
     }
   }
   tbb::parallel_for(std::size_t{0}, pack.batch_instances.size(),

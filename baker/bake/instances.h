@@ -10,6 +10,6 @@
 namespace chandelier::baker {
 
 /// Fills instances and batch_instances; needs batches and materials. Throws Error.
-void make_instances(const Scene& scene, const std::vector<MeshBatches>& meshes, Strings& strings, pack::Contents& pack);
+void make_instances(const Scene& scene, const std::vector<MeshRecords>& meshes, Strings& strings, pack::Contents& pack);
 
 }  // namespace chandelier::baker

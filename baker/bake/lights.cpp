@@ -22,6 +22,8 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     out.color = light.color;
     out.inner_cone_cos = 1;
     out.outer_cone_cos = -1;
+    out.priority = 128;
+    out.bounds_center_ws = light.position_ws;
     out.name = strings.add(light.name);
     if (light.type == LightType::directional) {
       out.type = pack::LightType::directional;
@@ -32,6 +34,7 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     out.type = light.type == LightType::spot ? pack::LightType::spot : pack::LightType::point;
     out.range_source = light.range_m ? pack::RangeSource::authored : pack::RangeSource::derived;
     out.range_m = light.range_m ? *light.range_m : derived_range_m(light.intensity, light.color, range_threshold_lx);
+    out.bounds_radius_m = out.range_m;
     if (light.type == LightType::spot) {
       out.inner_cone_cos = std::cos(light.inner_cone_rad);
       out.outer_cone_cos = std::cos(light.outer_cone_rad);

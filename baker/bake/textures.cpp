@@ -28,7 +28,8 @@ class Textures {
     if (added) {
       const Texture& in = scene_.textures[texture];
       it->second = fit_u32(pack_.textures.size(), "textures");
-      pack_.textures.push_back({.image = request(in.image, use),
+      pack_.textures.push_back({.uv_transform = {{{1, 0, 0}, {0, 1, 0}}},
+                                .image = request(in.image, use),
                                 .wrap_u = record_of(in.wrap_u),
                                 .wrap_v = record_of(in.wrap_v),
                                 .mag_filter = record_of(in.mag_filter),

@@ -76,8 +76,8 @@ std::vector<gpu::VertexStream> position_and_attribute_streams() {
   auto streams = position_stream();
   using V = pack::VertexAttributes;
   streams.push_back({sizeof(V),
-                     {{.location = 1, .format = VK_FORMAT_R32G32B32_SFLOAT, .offset = offsetof(V, normal_ls)},
-                      {.location = 2, .format = VK_FORMAT_R32G32B32A32_SFLOAT, .offset = offsetof(V, tangent_ls)},
+                     {{.location = 1, .format = VK_FORMAT_R32_UINT, .offset = offsetof(V, normal_ls)},
+                      {.location = 2, .format = VK_FORMAT_R32_UINT, .offset = offsetof(V, tangent_ls)},
                       {.location = 3, .format = VK_FORMAT_R32G32_SFLOAT, .offset = offsetof(V, uv0)},
                       {.location = 4, .format = VK_FORMAT_R32G32_SFLOAT, .offset = offsetof(V, uv1)},
                       {.location = 5, .format = VK_FORMAT_R8G8B8A8_UNORM, .offset = offsetof(V, color)}}});

@@ -5,14 +5,15 @@
 #include "frame_schema.glsl"
 #include "pack_schema.glsl"
 #include "scene/instance.glsl"
+#include "scene/octahedral.glsl"
 
 layout(binding = 0, scalar) readonly buffer Views { ViewConstants view; };
 layout(binding = 1, scalar) readonly buffer Draws { CasterDraw draws[]; };
 layout(binding = 2, scalar) readonly buffer Instances { Instance instances[]; };
 
 layout(location = 0) in vec3 position_ls;
-layout(location = 1) in vec3 normal_ls;
-layout(location = 2) in vec4 tangent_ls;
+layout(location = 1) in uint normal_bits;
+layout(location = 2) in uint tangent_bits;
 layout(location = 3) in vec2 uv0_in;
 layout(location = 4) in vec2 uv1_in;
 layout(location = 5) in vec4 color_in;
@@ -29,9 +30,10 @@ void main() {
   vec4 rows[3] = instances[draw.instance].world_from_local;
   vec3 p = to_world(rows, position_ls);
   position_from_eye = p - view.eye_ws;
-  normal_ws = normal_to_world(rows, normal_ls);
+  normal_ws = normal_to_world(rows, decode_normal(normal_bits));
   // The bitangent's sign refers to the unmirrored frame.
   float mirror = determinant(mat3(rows[0].xyz, rows[1].xyz, rows[2].xyz)) < 0.0 ? -1.0 : 1.0;
+  vec4 tangent_ls = decode_tangent(tangent_bits);
   tangent_ws = vec4(direction_to_world(rows, tangent_ls.xyz), tangent_ls.w * mirror);
   uv0_uv1 = vec4(uv0_in, uv1_in);
   color = color_in;

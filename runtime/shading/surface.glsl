@@ -3,6 +3,7 @@
 // 16 bits a side), z base colour (square root, 10 bits a channel), w metallic and roughness (16 bits each).
 #ifndef CHANDELIER_SURFACE_GLSL
 #define CHANDELIER_SURFACE_GLSL
+#include "scene/octahedral.glsl"
 
 struct Surface {
   vec3 normal;            // unit length, as shading bends it
@@ -11,20 +12,6 @@ struct Surface {
   float metallic;
   float roughness;
 };
-
-// Cigolle et al. 2014, A Survey of Efficient Representations for Independent Unit Vectors.
-vec2 octahedral(vec3 n) {
-  vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
-  vec2 folded = (1.0 - abs(p.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
-  return n.z >= 0.0 ? p : folded;
-}
-
-vec3 from_octahedral(vec2 p) {
-  vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-  vec2 folded = (1.0 - abs(p.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
-  if (n.z < 0.0) n.xy = folded;
-  return normalize(n);
-}
 
 uvec4 pack_surface(Surface s) {
   uvec3 c = uvec3(sqrt(clamp(s.base_color, 0.0, 1.0)) * 1023.0 + 0.5);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../unit/pack_sample.h"
+#include "octahedral.h"
 #include "pack_checks.h"
 
 namespace chandelier::test {
@@ -145,7 +146,7 @@ uint32_t Scene::add_texture(uint32_t width, uint32_t height, const std::vector<u
                               .level_count = 1,
                               .format = pack::ImageFormat::rgba8_unorm});
   contents_.image_data.insert(contents_.image_data.end(), bytes.begin(), bytes.end());
-  contents_.textures.push_back({static_cast<uint32_t>(contents_.images.size() - 1), pack::Wrap::clamp_to_edge,
+  contents_.textures.push_back({{{{1, 0, 0}, {0, 1, 0}}}, static_cast<uint32_t>(contents_.images.size() - 1), pack::Wrap::clamp_to_edge,
                                 pack::Wrap::clamp_to_edge, pack::Filter::nearest, pack::Filter::nearest});
   return static_cast<uint32_t>(contents_.textures.size() - 1);
 }
@@ -163,7 +164,13 @@ void Scene::add_batch(const Mesh& mesh, size_t first, size_t end, uint32_t mater
     local.include(mesh.vertices[vertex].position);
     world.include(transform(world_from_local, mesh.vertices[vertex].position));
   }
-  contents_.batches.push_back({local.min, first_index, local.max, static_cast<uint32_t>(end - first), material});
+  contents_.batches.push_back({.bounds_min_ls = local.min,
+                               .first_index = first_index,
+                               .bounds_max_ls = local.max,
+                               .index_count = static_cast<uint32_t>(end - first),
+                               .cone_cutoff = 1,
+                               .material = material});
+  contents_.meshes.back().batch_count += 1;
   contents_.batch_instances.push_back(
       {world.min, static_cast<uint32_t>(contents_.batches.size() - 1), world.max, instance});
 }
@@ -172,14 +179,17 @@ void Scene::add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from
   for (const Vertex& vertex : mesh.vertices) {
     const glm::vec3 axis = std::abs(vertex.normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     contents_.positions.push_back({vertex.position});
-    contents_.vertex_attributes.push_back({.normal_ls = vertex.normal,
-                                           .tangent_ls = glm::vec4(glm::normalize(glm::cross(axis, vertex.normal)), 1),
+    contents_.vertex_attributes.push_back({.normal_ls = pack::encode_normal(vertex.normal),
+                                           .tangent_ls = pack::encode_tangent(
+                                               glm::vec4(glm::normalize(glm::cross(axis, vertex.normal)), 1)),
                                            .uv0 = vertex.uv,
                                            .uv1 = vertex.uv,
                                            .color = 0xFFFFFFFFu});
   }
   const glm::mat4 rows = glm::transpose(world_from_local);
-  contents_.instances.push_back({.world_from_local = {rows[0], rows[1], rows[2]}});
+  contents_.meshes.push_back({.first_batch = static_cast<uint32_t>(contents_.batches.size())});
+  contents_.instances.push_back({.world_from_local = {rows[0], rows[1], rows[2]},
+                                 .mesh = static_cast<uint32_t>(contents_.meshes.size() - 1)});
   const auto instance = static_cast<uint32_t>(contents_.instances.size() - 1);
   for (size_t first = 0; first < mesh.indices.size(); first += batch_indices)
     add_batch(mesh, first, std::min(first + batch_indices, mesh.indices.size()), material, world_from_local, instance);

@@ -211,7 +211,7 @@ TEST(BatchInstances, AreRefusedByNumberBeforeTheyTakeMemory) {
   const MeshInstance instance = scene.instances[0];
   scene.instances.assign(100000, instance);  // of 5000 batches of 4 triangles or more
   try {
-    baker::bake(std::move(scene), {.batch_triangles = 4}, Progress(false));
+    bake_scene(std::move(scene), {.batch_triangles = 4});
     FAIL() << "baked";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("batches (2684"), std::string::npos) << error.what();

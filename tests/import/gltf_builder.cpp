@@ -61,7 +61,13 @@ Scene GltfBuilder::import(Warnings* warnings) const {
 }
 
 pack::Contents GltfBuilder::bake(const BakeSettings& settings) const {
-  return baker::bake(import(), settings, Progress(false));
+  return bake_scene(import(), settings);
+}
+
+pack::Contents bake_scene(Scene&& scene, const BakeSettings& settings) {
+  Report report;
+  Warnings warnings;
+  return baker::bake(std::move(scene), settings, Progress(false), report, warnings);
 }
 
 GltfBuilder one_triangle() {
@@ -77,7 +83,7 @@ std::string error_of(const std::filesystem::path& path) {
     Scene scene;
     Warnings warnings;
     import_gltf(path, scene, warnings);
-    baker::bake(std::move(scene), {}, Progress(false));
+    bake_scene(std::move(scene), {});
   } catch (const Error& error) {
     return error.what();
   }

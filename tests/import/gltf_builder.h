@@ -79,6 +79,9 @@ std::filesystem::path scratch_folder();
 void write_bytes(const std::filesystem::path& path, const std::string& bytes);
 std::string base64(const std::vector<std::uint8_t>& bytes);
 
+/// Bakes without progress; the report and the warnings go unread.
+pack::Contents bake_scene(Scene&& scene, const BakeSettings& settings);
+
 /// What import and bake throw for a file: the error's line, or "" where they pass.
 std::string error_of(const std::filesystem::path& path);
 

@@ -26,7 +26,7 @@ TEST(Merge, PutsASceneAndALightRigTogether) {
   import_gltf(first.save("first"), scene, warnings);
   import_gltf(second.save("second"), scene, warnings);
   import_gltf(rig().save("rig"), scene, warnings);
-  const pack::Contents pack = bake(std::move(scene), {}, Progress(false));
+  const pack::Contents pack = bake_scene(std::move(scene), {});
   EXPECT_EQ(pack.instances.size(), 2u);
   ASSERT_EQ(pack.batches.size(), 2u);
   ASSERT_EQ(pack.materials.size(), 2u);

@@ -23,12 +23,12 @@ class PackPython(unittest.TestCase):
         self.assertEqual({name: len(getattr(pack, name)) for name, _ in pack_schema.SECTIONS.values()}, {
             "bake_info": 1, "strings": 70, "positions": 4, "vertex_attributes": 4, "indices": 6, "batches": 2,
             "instances": 2, "batch_instances": 3, "materials": 2, "textures": 2, "images": 2, "image_data": 52,
-            "lights": 3, "cameras": 1})
+            "lights": 3, "cameras": 1, "meshes": 1} | {name: 0 for name, _ in list(pack_schema.SECTIONS.values())[15:]})
         info = pack.bake_info[0]
         self.assertEqual(pack.text(info["source"]), "hall.glb\nlamps.gltf")
         self.assertEqual((info["unique_triangles"], info["instanced_triangles"], info["batch_triangles"]), (2, 3, 100))
         self.assertEqual(pack.positions["position_ls"].tolist(), [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, -0.5]])
-        self.assertEqual(pack.vertex_attributes["tangent_ls"][2].tolist(), [1, 0, 0, -1])
+        self.assertEqual(pack.vertex_attributes["tangent_ls"][2], 0x80007FFF)  # +x, sign negative
         self.assertEqual(pack.vertex_attributes["uv1"][3].tolist(), [6, -1])
         self.assertEqual(pack.vertex_attributes["color"][1], 0xFF804021)
         self.assertEqual(pack.indices["vertex"].tolist(), [0, 1, 2, 0, 2, 3])

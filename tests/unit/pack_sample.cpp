@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "octahedral.h"
+
 namespace chandelier::pack::test {
 namespace {
 
@@ -14,13 +16,20 @@ void add_geometry(Contents& c) {
   c.positions = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, -0.5f}}};
   for (std::uint32_t i = 0; i < 4; ++i) {
     const float f = static_cast<float>(i);
-    c.vertex_attributes.push_back({{0, 0, 1}, {1, 0, 0, -1}, {0.25f * f, 0.5f}, {2.0f * f, -1}, 0xff804020u + i});
+    c.vertex_attributes.push_back({encode_normal({0, 0, 1}), encode_tangent({1, 0, 0, -1}), {0.25f * f, 0.5f}, {2.0f * f, -1}, 0xff804020u + i});
   }
   c.indices = {{0}, {1}, {2}, {0}, {2}, {3}};
-  c.batches = {{{0, 0, 0}, 0, {1, 1, 0}, 3, 0}, {{0, 0, -0.5f}, 3, {1, 1, 0}, 3, 1}};
+  c.batches = {{{0, 0, 0}, 0, {1, 1, 0}, 3, {0, 0, -1}, 0.5f, {0, 0, 1}, 0, 1},
+               {{0, 0, -0.5f}, 3, {1, 1, 0}, 3, {}, 1, {}, 1, 0}};
+  c.meshes.push_back({.bounds_min_ls = {0, 0, -0.5f},
+                      .first_batch = 0,
+                      .bounds_max_ls = {1, 1, 0},
+                      .batch_count = 2,
+                      .first_vertex = 0,
+                      .vertex_count = 4});
   const StringRef left = add_string(c, "left"), right = add_string(c, "right");
-  c.instances.push_back({{{{1, 0, 0, -2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, left});
-  c.instances.push_back({{{{1, 0, 0, 2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, right});
+  c.instances.push_back({{{{1, 0, 0, -2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0, 0, none, none, left});
+  c.instances.push_back({{{{1, 0, 0, 2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0, 0, none, none, right});
   c.batch_instances = {{{-2, 0, 0}, 0, {-1, 1, 0}, 0}, {{2, 0, 0}, 0, {3, 1, 0}, 1}, {{2, 0, -0.5f}, 1, {3, 1, 0}, 1}};
   c.bake_info.bounds_min_ws = {-2, 0, -0.5f};
   c.bake_info.bounds_max_ws = {3, 1, 0};
@@ -45,8 +54,8 @@ void add_materials(Contents& c) {
   leaf.double_sided = 1;
   leaf.name = add_string(c, "Blätter");
   c.materials = {stone, leaf};
-  c.textures = {{0, Wrap::repeat, Wrap::mirrored_repeat, Filter::linear, Filter::nearest},
-                {1, Wrap::clamp_to_edge, Wrap::repeat, Filter::linear, Filter::linear}};
+  c.textures = {{{{{1, 0, 0}, {0, 1, 0}}}, 0, Wrap::repeat, Wrap::mirrored_repeat, Filter::linear, Filter::nearest},
+                {{{{2, 0, 0.5f}, {0, 2, -0.25f}}}, 1, Wrap::clamp_to_edge, Wrap::repeat, Filter::linear, Filter::linear}};
   c.images.push_back({0, 44, 4, 2, 3, ImageFormat::rgba8_srgb, add_string(c, "bricks.png")});  // 4×2, 2×1, 1×1
   c.images.push_back({48, 4, 1, 1, 1, ImageFormat::rgba8_unorm, add_string(c, "flat")});
   for (int i = 0; i < 52; ++i) c.image_data.push_back(static_cast<std::byte>(i * 5));
@@ -61,6 +70,9 @@ void add_lights(Contents& c) {
   point.color = {1, 0.5f, 0.25f};
   point.inner_cone_cos = 1;
   point.outer_cone_cos = -1;
+  point.bounds_center_ws = point.position_ws;
+  point.bounds_radius_m = 7;
+  point.priority = 128;
   point.name = add_string(c, "bulb");
   Light spot = point;
   spot.type = LightType::spot;
@@ -78,7 +90,7 @@ void add_lights(Contents& c) {
   sun.range_source = RangeSource::unbounded;
   sun.name = add_string(c, "sun");
   c.lights = {point, spot, sun};
-  c.cameras.push_back({{0, 1, 5}, 0.8f, {0, 0, -1}, 1.5f, {0, 1, 0}, 0.1f, add_string(c, "eye")});
+  c.cameras.push_back({{0, 1, 5}, 0.8f, {0, 0, -1}, 1.5f, {0, 1, 0}, 0.1f, none, add_string(c, "eye")});
 }
 
 }  // namespace
