@@ -37,35 +37,47 @@ std::uint64_t bytes_of(const std::vector<Records>&... sections) {
   return (std::span(sections).size_bytes() + ...);
 }
 
-}  // namespace
-
-pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
-                    [[maybe_unused]] Warnings& warnings) {
-  pack::Contents pack;
-  Strings strings(pack.strings);
+/// Everything that neither lights nor image bytes touch: what a cache keeps from one bake to the next. Materials are
+/// there already.
+void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
+                   [[maybe_unused]] Warnings& warnings, Strings& strings, pack::Contents& pack) {
   std::vector<MeshRecords> meshes;
-  std::vector<ImageRequest> requests;
   report.run("batches", [&](PassReport& pass) {
     meshes = make_batches(scene, settings.batch_triangles, progress, pack);
     pass.bytes = bytes_of(pack.positions, pack.vertex_attributes, pack.indices, pack.batches, pack.meshes);
     pass.count("batches", static_cast<double>(pack.batches.size()));
   });
-  report.run("materials", [&](PassReport& pass) {
-    requests = make_materials(scene, strings, pack);
-    pass.bytes = bytes_of(pack.materials, pack.textures);
-  });
   report.run("instances", [&](PassReport& pass) {
     make_instances(scene, meshes, strings, pack);
     pass.bytes = bytes_of(pack.instances, pack.batch_instances);
   });
-  report.run("images", [&](PassReport& pass) {
-    make_images(scene, requests, progress, strings, pack);
-    pass.bytes = bytes_of(pack.images, pack.image_data);
-  });
+}
+
+void bake_lights(const Scene& scene, const BakeSettings& settings, Report& report, [[maybe_unused]] Warnings& warnings,
+                 Strings& strings, pack::Contents& pack) {
   report.run("lights", [&](PassReport& pass) {
     make_lights(scene, settings.range_threshold_lx, strings, pack);
     pass.bytes = bytes_of(pack.lights);
   });
+}
+
+}  // namespace
+
+pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
+                    Warnings& warnings) {
+  pack::Contents pack;
+  Strings strings(pack.strings);
+  std::vector<ImageRequest> requests;
+  report.run("materials", [&](PassReport& pass) {
+    requests = make_materials(scene, strings, pack);
+    pass.bytes = bytes_of(pack.materials, pack.textures);
+  });
+  bake_geometry(scene, settings, progress, report, warnings, strings, pack);
+  report.run("images", [&](PassReport& pass) {
+    make_images(scene, requests, progress, strings, pack);
+    pass.bytes = bytes_of(pack.images, pack.image_data);
+  });
+  bake_lights(scene, settings, report, warnings, strings, pack);
   make_cameras(scene, strings, pack);
   describe(scene, settings, strings, pack);
   report.run("check", [&](PassReport&) {
