@@ -9,7 +9,7 @@ PLAY := $(BUILD)/bin/chandelier-play
 BAKE := $(BUILD)/bin/chandelier-bake
 CPP_FILES := $(shell git ls-files '*.cpp' '*.h' 2>/dev/null)
 
-.PHONY: help setup build demo test test-mesa25 bench format portable clean
+.PHONY: help setup build demo test test-mesa25 bench fuzz format portable clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -19,6 +19,7 @@ help:
 	@echo "make build        build into build/bin/"
 	@echo "make test-mesa25  run the GPU tests on Mesa 25, unpacked privately into build/mesa25"
 	@echo "make bench        time the selection of light clusters, and the atrium's stages (on Mesa 25 where it can be had)"
+	@echo "make fuzz         look for inputs that break the importer, the pack reader or the cache, SECONDS=60 each; what is found is kept"
 	@echo "make portable     build a chandelier-play that needs only glibc and a Vulkan loader, in build/portable/bin/"
 	@echo "make format       clang-format every C++ file"
 	@echo "make clean        remove build/"
@@ -61,6 +62,24 @@ bench: setup
 	variables="$$(setup/mesa25.sh $(BUILD)/mesa25 || true)"; env $$variables \
 	  $(PLAY) $(BUILD)/demo/atrium.chandelier --compare reference,lightcluster --size $(DEMO_SIZE) --frames 9 \
 	  --report $(BUILD)/bench/atrium
+
+SECONDS := 60
+FUZZ_TARGETS := import pack
+CORPUS := tests/fuzz/corpus
+DATA := ../shared/data
+
+# Starts from the corpus that is kept with the tests, and from small glTFs of the test data where it is. A crash is written
+# into the corpus, where `make test` replays it from then on.
+fuzz:
+	@setup/install.sh setup/packages-fuzz.txt
+	cmake --preset fuzz
+	cmake --build --preset fuzz
+	@mkdir -p $(FUZZ_TARGETS:%=$(BUILD)/fuzz/found/%) $(FUZZ_TARGETS:%=$(CORPUS)/%)
+	@if [ -d $(DATA) ]; then $(PYTHON) tests/fuzz/seeds.py --out $(BUILD)/fuzz/found/import $(DATA)/conformance $(DATA)/models; fi
+	set -e; for target in $(FUZZ_TARGETS); do \
+	  ASAN_OPTIONS=detect_leaks=0 $(BUILD)/fuzz/bin/$${target}_fuzz -max_total_time=$(SECONDS) -max_len=65536 -timeout=30 -rss_limit_mb=8192 \
+	    -print_final_stats=1 -artifact_prefix=$(CORPUS)/$$target/ $(BUILD)/fuzz/found/$$target $(CORPUS)/$$target; \
+	done
 
 EXAMPLE_MODULES := examples/gltf_writer.py examples/shapes.py examples/textures.py
 

@@ -1,10 +1,12 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs those Debian packages of setup/packages.txt that are missing; touches nothing, apt included, when none is.
+# Installs those Debian packages of setup/packages.txt, and of the lists that are named besides, that are missing; touches
+# nothing, apt included, when none is.
+#   setup/install.sh [LIST.txt …]
 set -euo pipefail
 
 list="$(dirname "$0")/packages.txt"
-mapfile -t wanted < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$list")
+mapfile -t wanted < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$list" "$@")
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   echo "setup/install.sh: error: this system has no apt; install what $list names by its own means, then use 'make build'" >&2

@@ -15,11 +15,16 @@ endif()
 
 add_library(chandelier_options INTERFACE)
 # Vulkan's structs are filled by naming what matters; the rest is zero.
-target_compile_options(chandelier_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict
+target_compile_options(chandelier_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                        -Wno-missing-field-initializers)
 if(CHANDELIER_SANITIZE)
   add_compile_options(-fsanitize=${CHANDELIER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${CHANDELIER_SANITIZE})
+endif()
+
+if(CHANDELIER_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
 # chandelier_shaders(TARGET file…): compiles each GLSL file to SPIR-V with glslangValidator and embeds it, so that

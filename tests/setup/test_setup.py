@@ -27,8 +27,10 @@ class Setup(unittest.TestCase):
             self.assertTrue(os.access(os.path.join(ROOT, script), os.X_OK), script)
 
     def test_package_list_is_in_order(self):
-        with open(os.path.join(ROOT, "setup", "packages.txt"), encoding="utf-8") as file:
-            names = [line.split("#")[0].strip() for line in file]
+        names = []
+        for list_name in ("packages.txt", "packages-bench.txt", "packages-fuzz.txt"):
+            with open(os.path.join(ROOT, "setup", list_name), encoding="utf-8") as file:
+                names += [line.split("#")[0].strip() for line in file]
         names = [name for name in names if name]
         self.assertGreater(len(names), 20)
         self.assertEqual(len(names), len(set(names)), "a package twice")
