@@ -4,6 +4,7 @@
 
 #include "geometry.h"
 #include "gltf.h"
+#include "lights.h"
 #include "materials.h"
 #include "nodes.h"
 

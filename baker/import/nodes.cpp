@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node transforms, lights (KHR_lights_punctual) and cameras.
+// Node transforms and cameras.
 #include "nodes.h"
 
 #include <algorithm>
@@ -58,19 +58,17 @@ void check_finite(const glm::dmat4& m, const std::string& where) {
   }
 }
 
-/// A direction of the node in the world, or zero where the transform leaves none.
+}  // namespace
+
 glm::dvec3 world_direction(const glm::dmat4& world, const glm::dvec3& local) {
   const glm::dvec3 direction = glm::dmat3(world) * local;
   const double length = glm::length(direction);
   return length > 1e-30 ? direction / length : glm::dvec3(0);
 }
 
-/// The node's name, else the light's or camera's own.
 std::string name_of(const tinygltf::Node& node, const std::string& own) {
   return node.name.empty() ? own : node.name;
 }
-
-}  // namespace
 
 std::vector<PlacedNode> place_nodes(const Gltf& gltf) {
   std::vector<PlacedNode> out;
@@ -104,40 +102,6 @@ bool is_degenerate(const glm::dmat4& transform) {
     volume *= length;
   }
   return !(std::abs(glm::determinant(linear)) > 1e-9 * volume);
-}
-
-void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings) {
-  const tinygltf::Node& node = gltf.model.nodes[placed.node];
-  const auto extension = node.extensions.find("KHR_lights_punctual");
-  if (extension == node.extensions.end() || !extension->second.Has("light")) return;
-  const tinygltf::Light& in =
-      gltf.model.lights[static_cast<std::size_t>(extension->second.Get("light").GetNumberAsInt())];
-  const std::string here = place(gltf.json, "nodes", placed.node);
-  Light out;
-  out.name = name_of(node, in.name);
-  out.intensity = static_cast<float>(in.intensity);
-  for (int c = 0; c < 3 && !in.color.empty(); ++c) out.color[c] = static_cast<float>(in.color[c]);
-  if (out.intensity == 0 || std::max({out.color.r, out.color.g, out.color.b}) == 0) {
-    warnings.add(gltf.file, here, "a light without intensity or colour is skipped");
-    return;
-  }
-  if (in.type == "spot") out.type = LightType::spot;
-  if (in.type == "directional") out.type = LightType::directional;
-  out.direction_ws = glm::vec3(world_direction(placed.world_from_local, {0, 0, -1}));
-  if (out.direction_ws == glm::vec3(0)) {
-    if (out.type != LightType::point) {
-      warnings.add(gltf.file, here, "a light whose node has zero scale has no direction and is skipped");
-      return;
-    }
-    out.direction_ws = {0, 0, -1};
-  }
-  if (out.type != LightType::directional) {
-    out.position_ws = glm::vec3(placed.world_from_local[3]);
-    if (in.range > 0) out.range_m = static_cast<float>(in.range);
-  }
-  out.inner_cone_rad = static_cast<float>(in.spot.innerConeAngle);
-  out.outer_cone_rad = static_cast<float>(in.spot.outerConeAngle);
-  scene.lights.push_back(std::move(out));
 }
 
 void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node tree: where meshes, lights and cameras stand in the world.
+// The node tree: where meshes, lights and cameras stand in the world; cameras.
 #pragma once
 
 #include "../scene.h"
@@ -16,9 +16,14 @@ struct PlacedNode {
 /// first. Throws Error.
 std::vector<PlacedNode> place_nodes(const Gltf& gltf);
 
-/// Appends the node's light or camera to the scene, where it has one. Throws Error.
-void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);
+/// Appends the node's camera to the scene, where it has one. Throws Error.
 void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);
+
+/// A direction of the node in the world, or zero where the transform leaves none.
+glm::dvec3 world_direction(const glm::dmat4& world, const glm::dvec3& local);
+
+/// The node's name, else the light's or camera's own.
+std::string name_of(const tinygltf::Node& node, const std::string& own);
 
 /// Whether the transform squashes space flat, so that normals and winding have no meaning, or scales an axis by less
 /// than 1e-9 or more than 1e9, so that who draws it in floats would find it flat or infinite.

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// KHR_lights_punctual, and what a light's author adds in `extras.chandelier`: on the light, or on the node, which wins.
+// The rules are those of schemas/light_extras.schema.json; a test compares the two.
+#include "lights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+namespace chandelier::baker {
+namespace {
+
+constexpr std::array<std::string_view, 5> kKnownKeys = {"cluster", "dynamic", "power_w", "priority", "range_m"};
+constexpr double kMostPriority = 255, kMostPower = 1e12, kLeastRange = 1e-12, kMostRange = 3e38;
+
+/// One `extras.chandelier` and where it is; each member function reads one of its keys, where it is there.
+struct Extras {
+  const Json& json;
+  std::string where;
+
+  [[noreturn]] void bad(const char* key, const char* what, const Json& value) const {
+    fail(where + ", " + key, std::string(what) + " (" + shortened(value.dump(-1, ' ', true), 60) + ")");
+  }
+
+  std::optional<bool> boolean(const char* key) const {
+    const auto it = json.find(key);
+    if (it == json.end()) return std::nullopt;
+    if (!it->is_boolean()) bad(key, "is not true or false", *it);
+    return it->get<bool>();
+  }
+
+  std::optional<double> number(const char* key, double least, double most) const {
+    const auto it = json.find(key);
+    if (it == json.end()) return std::nullopt;
+    if (!it->is_number()) bad(key, "is not a number", *it);
+    const auto value = it->get<double>();
+    if (!(value >= least && value <= most)) bad(key, "is out of range", *it);
+    return value;
+  }
+
+  /// JSON Schema's integer: 128.0 is one.
+  std::optional<std::uint32_t> integer(const char* key, double least, double most) const {
+    const auto value = number(key, least, most);
+    if (!value) return std::nullopt;
+    if (*value != std::floor(*value)) bad(key, "is not a whole number", json[key]);
+    return static_cast<std::uint32_t>(*value);
+  }
+};
+
+/// `owner`: a node or a light. A key that nothing reads may be a typing error: that is said, as it changes nothing.
+void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, Light& out, Warnings& warnings) {
+  const auto all = owner.find("extras");
+  if (all == owner.end() || !all->is_object() || !all->contains("chandelier")) return;
+  const Extras extras{(*all)["chandelier"], gltf.file + ": " + here + ", extras.chandelier"};
+  if (!extras.json.is_object()) {
+    fail(extras.where, "is not an object (" + shortened(extras.json.dump(-1, ' ', true), 60) + ")");
+  }
+  for (const auto& [key, value] : extras.json.items()) {
+    if (std::find(kKnownKeys.begin(), kKnownKeys.end(), key) != kKnownKeys.end()) continue;
+    warnings.add(gltf.file, here, "extras.chandelier: unknown key is ignored", key);
+  }
+  if (const auto value = extras.integer("priority", 0, kMostPriority)) out.priority = *value;
+  if (const auto value = extras.boolean("dynamic")) out.dynamic = *value;
+  if (const auto value = extras.boolean("cluster")) out.unclustered = !*value;
+  if (const auto value = extras.number("power_w", 0, kMostPower)) out.power_w = static_cast<float>(*value);
+  if (const auto value = extras.number("range_m", kLeastRange, kMostRange)) out.range_m = static_cast<float>(*value);
+}
+
+/// Turns the light to its node's -Z. False where the node has no direction and the light needs one.
+bool aim(const PlacedNode& placed, Light& light) {
+  const glm::dvec3 direction = world_direction(placed.world_from_local, {0, 0, -1});
+  if (direction == glm::dvec3(0)) return light.type == LightType::point;  // which keeps its own
+  light.direction_ws = glm::vec3(direction);
+  return true;
+}
+
+}  // namespace
+
+void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings) {
+  const tinygltf::Node& node = gltf.model.nodes[placed.node];
+  const auto extension = node.extensions.find("KHR_lights_punctual");
+  if (extension == node.extensions.end() || !extension->second.Has("light")) return;
+  const auto number = static_cast<std::size_t>(extension->second.Get("light").GetNumberAsInt());
+  const tinygltf::Light& in = gltf.model.lights[number];
+  const Json& lights = gltf.json["extensions"]["KHR_lights_punctual"];
+  const std::string here = place(gltf.json, "nodes", placed.node);
+  Light out;
+  out.name = name_of(node, in.name);
+  out.where = gltf.file + ": " + here;
+  out.intensity = static_cast<float>(in.intensity);
+  for (int c = 0; c < 3 && !in.color.empty(); ++c) out.color[c] = static_cast<float>(in.color[c]);
+  if (in.type == "spot") out.type = LightType::spot;
+  if (in.type == "directional") out.type = LightType::directional;
+  if (in.range > 0) out.range_m = static_cast<float>(in.range);
+  read_extras(gltf, lights["lights"][number], place(lights, "lights", number), out, warnings);
+  read_extras(gltf, gltf.json["nodes"][placed.node], here, out, warnings);
+  if (out.intensity == 0 || std::max({out.color.r, out.color.g, out.color.b}) == 0) {
+    warnings.add(gltf.file, here, "a light without intensity or colour is skipped");
+    return;
+  }
+  if (!aim(placed, out)) {
+    warnings.add(gltf.file, here, "a light whose node has zero scale has no direction and is skipped");
+    return;
+  }
+  if (out.type == LightType::directional) {
+    out.range_m.reset();
+  } else {
+    out.position_ws = glm::vec3(placed.world_from_local[3]);
+  }
+  out.inner_cone_rad = static_cast<float>(in.spot.innerConeAngle);
+  out.outer_cone_rad = static_cast<float>(in.spot.outerConeAngle);
+  scene.lights.push_back(std::move(out));
+}
+
+}  // namespace chandelier::baker

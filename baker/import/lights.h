@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights: KHR_lights_punctual, and what their author adds in `extras.chandelier` (light_extras.schema.json).
+#pragma once
+
+#include "../scene.h"
+#include "gltf.h"
+#include "nodes.h"
+
+namespace chandelier::baker {
+
+/// Appends the node's light to the scene, where it has one. Throws Error.
+void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);
+
+}  // namespace chandelier::baker
