@@ -10,7 +10,6 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cerrno>
 #include <cstring>
@@ -44,45 +43,9 @@ std::uint64_t align_up(std::uint64_t offset) {
 
 // ---- Writing
 
-/// A file that is deleted unless it is renamed.
-struct TemporaryFile {
-  std::filesystem::path path;
-  int descriptor = -1;
-
-  explicit TemporaryFile(const std::filesystem::path& folder);
-  ~TemporaryFile() {
-    if (descriptor >= 0) close(descriptor);
-    if (!path.empty()) unlink(path.c_str());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-};
-
-// Not mkstemp(): the pack should get the permissions that the user's umask gives any new file.
-TemporaryFile::TemporaryFile(const std::filesystem::path& folder) {
-  static std::atomic<unsigned> counter = 0;
-  do {
-    const std::string name = ".chandelier-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
-    const std::filesystem::path candidate = folder / name;
-    descriptor = open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0) path = candidate;
-  } while (descriptor < 0 && errno == EEXIST);
-}
-
-void write_all(const std::filesystem::path& path, int descriptor, const void* data, std::size_t size) {
-  const char* at = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t written = ::write(descriptor, at, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail_system(path, "cannot write", errno);
-    at += written;
-    size -= static_cast<std::size_t>(written);
-  }
-}
-
-void write_zeros(const std::filesystem::path& path, int descriptor, std::uint64_t size) {
+void write_zeros(TemporaryFile& file, std::uint64_t size) {
   static constexpr std::byte zeros[section_alignment] = {};
-  write_all(path, descriptor, zeros, size);
+  file.write(zeros, size);
 }
 
 struct Layout {
@@ -118,23 +81,15 @@ Layout lay_out(const View& view) {
   return layout;
 }
 
-void write_layout(const std::filesystem::path& path, int descriptor, const Layout& layout) {
-  write_all(path, descriptor, &layout.header, sizeof(FileHeader));
-  write_all(path, descriptor, layout.table.data(), layout.table.size() * sizeof(SectionEntry));
+void write_layout(TemporaryFile& file, const Layout& layout) {
+  file.write(&layout.header, sizeof(FileHeader));
+  file.write(layout.table.data(), layout.table.size() * sizeof(SectionEntry));
   std::uint64_t end = sizeof(FileHeader) + layout.table.size() * sizeof(SectionEntry);
   for (std::size_t i = 0; i < layout.table.size(); ++i) {
-    write_zeros(path, descriptor, layout.table[i].offset_bytes - end);
-    write_all(path, descriptor, layout.sections[i].data(), layout.sections[i].size());
+    write_zeros(file, layout.table[i].offset_bytes - end);
+    file.write(layout.sections[i].data(), layout.sections[i].size());
     end = layout.table[i].offset_bytes + layout.table[i].size_bytes;
   }
-}
-
-/// Makes the rename durable. The pack is in place and whole by now, so a file system that cannot do this is no failure.
-void sync_folder(const std::filesystem::path& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
 }
 
 // ---- Reading
@@ -259,20 +214,14 @@ std::string table_fault(std::span<const std::byte> file, const FileHeader& heade
 
 }  // namespace
 
+void write(const std::filesystem::path& path, const View& view, Sync sync) {
+  TemporaryFile file(path);
+  write_layout(file, lay_out(view));
+  file.commit(sync);
+}
+
 void write(const std::filesystem::path& path, const Contents& contents) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (!path.has_filename()) fail(path, "not a file name");
-  if (exists(status) && !is_regular_file(status)) fail(path, "exists and is not a regular file");
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  TemporaryFile file(folder);
-  if (file.descriptor < 0) fail_system(path, "cannot create a file in its folder", errno);
-  write_layout(path, file.descriptor, lay_out(view_of(contents)));
-  if (fsync(file.descriptor) != 0) fail_system(path, "cannot sync", errno);
-  if (close(std::exchange(file.descriptor, -1)) != 0) fail_system(path, "cannot close", errno);
-  if (rename(file.path.c_str(), path.c_str()) != 0) fail_system(path, "cannot replace", errno);
-  file.path.clear();
-  sync_folder(folder);
+  write(path, view_of(contents), Sync::yes);
 }
 
 File::File(const std::filesystem::path& path) {

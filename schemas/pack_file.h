@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pack_schema.h"  // generated from pack.xml: records, enums, Contents (owning vectors), View (spans), validate()
+#include "temporary_file.h"
 
 namespace chandelier::pack {
 
@@ -19,6 +20,7 @@ struct Error : std::runtime_error {
 /// behind and an older pack stays. Same contents, same bytes. Values are not looked at: check() of pack_checks.h says
 /// beforehand whether the pack will open. Throws Error.
 void write(const std::filesystem::path& path, const Contents& contents);
+void write(const std::filesystem::path& path, const View& view, Sync sync);
 
 /// A mapped pack. Every offset, count, index, enum and float has been checked when the constructor returns.
 class File {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file that appears under its name only when it is whole.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+
+namespace chandelier::pack {
+
+enum class Sync { yes, no };
+
+/// Writes beside `path` and renames over it. Until then an older file at `path` stays as it is. Every failure is thrown
+/// as pack::Error.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::filesystem::path& path);
+  ~TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  void write(const void* data, std::size_t size);
+
+  /// Puts the file in its place. Without `sync`, a power failure soon after may leave an empty or damaged file there.
+  void commit(Sync sync);
+
+ private:
+  bool create(const std::filesystem::path& folder);
+
+  std::filesystem::path path_, temporary_;
+  int descriptor_ = -1;
+};
+
+/// Writes all of `text`, as above.
+void write_text(const std::filesystem::path& path, std::string_view text);
+
+/// Deletes what writers that were killed left in `folder`. Those that still write keep theirs: each holds a lock on it.
+void remove_stale_files(const std::filesystem::path& folder);
+
+}  // namespace chandelier::pack
