@@ -33,6 +33,31 @@ std::string check_range_threshold(const std::string& text) {
   return {};
 }
 
+std::string check_position_error(const std::string& text) {
+  float value = 0;
+  if (!CLI::detail::lexical_cast(text, value) || !(value >= 0 && value <= 1)) {
+    return "must be a number from 0 to 1 (" + text + ")";
+  }
+  return {};
+}
+
+std::string check_smooth_angle(const std::string& text) {
+  float value = 0;
+  if (!CLI::detail::lexical_cast(text, value) || !(value >= 0 && value <= 180)) {
+    return "must be a number from 0 to 180 (" + text + ")";
+  }
+  return {};
+}
+
+template <int Least, int Most>
+std::string check_whole_number(const std::string& text) {
+  int value = 0;
+  if (!CLI::detail::lexical_cast(text, value) || value < Least || value > Most) {
+    return "must be a whole number from " + std::to_string(Least) + " to " + std::to_string(Most) + " (" + text + ")";
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
@@ -50,6 +75,21 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
                  "A light without a range ends where its illuminance is this, lux")
       ->capture_default_str()
       ->check(CLI::Validator(check_range_threshold, ""));
+  app.add_option("--position-error", options.bake.position_error_m,
+                 "Most that a vertex may be moved to store it in fewer bits, metres; 0 moves none")
+      ->capture_default_str()
+      ->check(CLI::Validator(check_position_error, ""));
+  app.add_option("--normal-bits", options.bake.normal_bits, "Bits of each of a normal's two numbers, 8 to 16")
+      ->capture_default_str()
+      ->check(CLI::Validator(check_whole_number<8, 16>, ""));
+  app.add_option("--uv-bits", options.bake.uv_bits,
+                 "Bits of a texture coordinate after the point, up to 20; 0 keeps them as they are")
+      ->capture_default_str()
+      ->check(CLI::Validator(check_whole_number<0, 20>, ""));
+  app.add_option("--smooth-angle", options.bake.smooth_angle_deg,
+                 "Where normals are missing, smooth edges up to this angle, degrees; 0 makes all flat, as glTF asks")
+      ->capture_default_str()
+      ->check(CLI::Validator(check_smooth_angle, ""));
   app.add_flag("-q,--quiet", options.quiet, "No progress and no summary; warnings and errors stay");
   try {
     app.parse(argc, argv);

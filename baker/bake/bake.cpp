@@ -2,16 +2,20 @@
 // The passes in their order.
 #include "bake.h"
 
+#include <glm/trigonometric.hpp>
 #include <span>
 
 #include "../error.h"
+#include "batch_bvh.h"
 #include "batches.h"
 #include "images.h"
 #include "instances.h"
 #include "lights.h"
+#include "normals.h"
 #include "pack_checks.h"
 #include "strings.h"
 #include "textures.h"
+#include "triangle_bvh.h"
 
 namespace chandelier::baker {
 namespace {
@@ -42,6 +46,9 @@ std::uint64_t bytes_of(const std::vector<Records>&... sections) {
 void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
                    [[maybe_unused]] Warnings& warnings, Strings& strings, pack::Contents& pack) {
   std::vector<MeshRecords> meshes;
+  report.run("normals", [&](PassReport& pass) {
+    pass.count("primitives", static_cast<double>(make_normals(scene, glm::radians(settings.smooth_angle_deg))));
+  });
   report.run("batches", [&](PassReport& pass) {
     meshes = make_batches(scene, settings.batch_triangles, progress, pack);
     pass.bytes = bytes_of(pack.positions, pack.vertex_attributes, pack.indices, pack.batches, pack.meshes);
@@ -51,6 +58,9 @@ void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& p
     make_instances(scene, meshes, strings, pack);
     pass.bytes = bytes_of(pack.instances, pack.batch_instances);
   });
+  report.run("batch_bvh", [&](PassReport& pass) { make_batch_bvh(pass, pack); });
+  report.run("instance_bvh", [&](PassReport& pass) { make_instance_bvh(pass, pack); });
+  report.run("triangle_bvh", [&](PassReport& pass) { make_triangle_bvh(pass, pack); });
 }
 
 void bake_lights(const Scene& scene, const BakeSettings& settings, Report& report, [[maybe_unused]] Warnings& warnings,

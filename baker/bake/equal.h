@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which elements of an array are equal: the one hash table of the geometry passes, on all cores.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace chandelier::baker {
+
+/// For each of `count` elements the number of the first that equals it. `hash(i)` is 32 bits, of which all must count;
+/// `equal(i, j)` decides. Elements are dealt by their hash to tables that fit a cache, a task each, in ascending order.
+template <typename Hash, typename Equal>
+std::vector<std::uint32_t> first_equal(std::size_t count, Hash hash, Equal equal) {
+  constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
+  constexpr std::size_t kTableElements = 1 << 14;
+  struct Keyed {
+    std::uint32_t hash, element;
+  };
+  const int shift = 32 - std::clamp(static_cast<int>(std::bit_width(count / kTableElements)), 0, 12);
+  const auto table_of = [&](std::uint32_t h) { return shift == 32 ? 0 : h >> shift; };
+
+  std::vector<std::uint32_t> first(count);  // the hashes, until they are dealt
+  tbb::parallel_for(std::size_t{0}, (count + 4095) / 4096, [&](std::size_t block) {
+    for (std::size_t i = block * 4096; i < std::min(count, block * 4096 + 4096); ++i) first[i] = hash(i);
+  });
+  std::vector<std::size_t> end((std::size_t{1} << (32 - shift)) + 1, 0);
+  for (const std::uint32_t h : first) ++end[table_of(h) + 1];
+  for (std::size_t t = 1; t < end.size(); ++t) end[t] += end[t - 1];
+  std::vector<Keyed> dealt(count);
+  for (std::size_t i = 0; i < count; ++i) dealt[end[table_of(first[i])]++] = {first[i], static_cast<std::uint32_t>(i)};
+
+  tbb::parallel_for(std::size_t{0}, end.size() - 1, [&](std::size_t t) {
+    const std::size_t begin = t == 0 ? 0 : end[t - 1];  // dealing has moved each end to the next one's begin
+    const std::size_t size = std::bit_ceil(std::max<std::size_t>(2 * (end[t] - begin), 2));
+    std::vector<Keyed> table(size, Keyed{0, kEmpty});
+    for (std::size_t i = begin; i < end[t]; ++i) {
+      const Keyed key = dealt[i];
+      std::size_t slot = key.hash & (size - 1);
+      while (table[slot].element != kEmpty &&
+             (table[slot].hash != key.hash || !equal(table[slot].element, key.element))) {
+        slot = (slot + 1) & (size - 1);
+      }
+      if (table[slot].element == kEmpty) table[slot] = key;
+      first[key.element] = table[slot].element;
+    }
+  });
+  return first;
+}
+
+/// Mixes all bits of the words of a record into 32 (the multiplier and the final mix are those of MurmurHash3).
+inline std::uint32_t hash_words(const std::uint32_t* words, std::size_t count) {
+  std::uint64_t h = count;
+  for (std::size_t i = 0; i < count; ++i) h = (h ^ words[i]) * 0xff51afd7ed558ccdull, h ^= h >> 29;
+  h *= 0xc4ceb9fe1a85ec53ull;
+  return static_cast<std::uint32_t>(h >> 32);
+}
+
+}  // namespace chandelier::baker
