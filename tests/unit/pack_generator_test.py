@@ -78,7 +78,7 @@ class PackGenerator(unittest.TestCase):
             self.assertEqual(self.schema_of(text.replace(old, new)).hash, before)
         for old, new in (('name="uv1_mask"', 'name="uv_mask"'), ('name="nearest" value="0"', 'name="near" value="0"'),
                          ('<field name="yfov_rad" type="f32"', '<field name="yfov_rad" type="u32"'),
-                         ('kind="14"', 'kind="15"')):
+                         ('kind="37"', 'kind="38"')):
             self.assertIn(old, text)
             self.assertNotEqual(self.schema_of(text.replace(old, new)).hash, before, old)
 

@@ -28,10 +28,10 @@ class PackInspect(unittest.TestCase):
         self.assertEqual(report["size_bytes"], self.path.stat().st_size)
         self.assertEqual(report["sources"], ["hall.glb", "lamps.gltf"])
         self.assertEqual(report["bounds_min_ws"], [-2, 0, -0.5])
-        self.assertEqual(report["sections"][2], {"kind": 3, "name": "positions", "count": 4, "stride_bytes": 12,
-                                                 "size_bytes": 48})
-        self.assertEqual(report["triangles"], {"stored": 2, "drawn": 3})
-        self.assertEqual(report["batches"], {"count": 2, "drawn": 3, "triangles": {"min": 1, "mean": 1, "max": 1}})
+        self.assertEqual(report["sections"][2], {"kind": 3, "name": "positions", "count": 7, "stride_bytes": 12,
+                                                 "size_bytes": 84})
+        self.assertEqual(report["triangles"], {"stored": 3, "drawn": 5})
+        self.assertEqual(report["batches"], {"count": 3, "drawn": 5, "triangles": {"min": 1, "mean": 1, "max": 1}})
         self.assertEqual([m["name"] for m in report["materials"]], ["stone", "Blätter"])
         self.assertEqual(report["images"][0], {"name": "bricks.png", "width": 4, "height": 2, "level_count": 3,
                                                "format": "rgba8_srgb", "size_bytes": 44})
@@ -44,7 +44,7 @@ class PackInspect(unittest.TestCase):
     def test_text(self):
         run = inspect(self.path)
         self.assertEqual((run.returncode, run.stderr), (0, ""))
-        for part in ("positions                    4      12              48", "2 stored, 3 drawn by 2 instances",
+        for part in ("positions                    7      12              84", "3 stored, 5 drawn by 3 instances",
                      "3: 1 point, 1 spot, 1 directional", "1 authored, 1 derived at 0.05 lx", "bricks.png", "eye"):
             self.assertIn(part, run.stdout)
         self.assertNotIn("torch", run.stdout)
@@ -52,7 +52,7 @@ class PackInspect(unittest.TestCase):
     def test_light_table(self):
         lines = inspect(self.path, "--lights").stdout.splitlines()
         torch = next(line for line in lines if "torch" in line)
-        self.assertEqual(torch.split(), ["spot", "1,", "2,", "3", "12.5", "cd", "15.8", "m", "derived", "torch"])
+        self.assertEqual(torch.split(), ["spot", "1,", "0.5,", "-0.125", "12.5", "cd", "15.8", "m", "derived", "torch"])
         sun = next(line for line in lines if "sun" in line)
         self.assertEqual(sun.split(), ["directional", "to", "0,", "0,", "-1", "1000", "lx", "no", "end", "sun"])
 

@@ -21,19 +21,28 @@ class PackPython(unittest.TestCase):
     def test_values(self):
         pack = pack_schema.read_pack(self.path)
         self.assertEqual({name: len(getattr(pack, name)) for name, _ in pack_schema.SECTIONS.values()}, {
-            "bake_info": 1, "strings": 70, "positions": 4, "vertex_attributes": 4, "indices": 6, "batches": 2,
-            "instances": 2, "batch_instances": 3, "materials": 2, "textures": 2, "images": 2, "image_data": 52,
-            "lights": 3, "cameras": 1, "meshes": 1} | {name: 0 for name, _ in list(pack_schema.SECTIONS.values())[15:]})
+            "bake_info": 1, "strings": 89, "positions": 7, "vertex_attributes": 7, "indices": 9, "batches": 3,
+            "instances": 3, "batch_instances": 5, "materials": 2, "textures": 2, "images": 2, "image_data": 52,
+            "lights": 3, "cameras": 1, "meshes": 2, "batch_bvh": 3, "batch_bvh_items": 4, "instance_bvh": 3,
+            "instance_bvh_items": 2, "triangle_bvh": 4, "triangle_bvh_items": 3, "triangle_bvh_areas": 4,
+            "light_bvh": 3, "voxel_grid": 1, "voxel_cells": 2, "voxel_runs": 4, "voxel_indices": 24,
+            "voxel_vertices": 10, "voxel_occupancy": 1, "nodes": 2, "animations": 1, "animation_channels": 3,
+            "animation_times": 3, "animation_values": 23, "skins": 1, "joints": 2, "skin_vertices": 3})
         info = pack.bake_info[0]
         self.assertEqual(pack.text(info["source"]), "hall.glb\nlamps.gltf")
-        self.assertEqual((info["unique_triangles"], info["instanced_triangles"], info["batch_triangles"]), (2, 3, 100))
-        self.assertEqual(pack.positions["position_ls"].tolist(), [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, -0.5]])
+        self.assertEqual((info["unique_triangles"], info["instanced_triangles"], info["batch_triangles"]), (3, 5, 100))
+        self.assertEqual(pack.positions["position_ls"][:4].tolist(), [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, -0.5]])
         self.assertEqual(pack.vertex_attributes["tangent_ls"][2], 0x80007FFF)  # +x, sign negative
         self.assertEqual(pack.vertex_attributes["uv1"][3].tolist(), [6, -1])
         self.assertEqual(pack.vertex_attributes["color"][1], 0xFF804021)
-        self.assertEqual(pack.indices["vertex"].tolist(), [0, 1, 2, 0, 2, 3])
-        self.assertEqual(pack.batches["first_index"].tolist(), [0, 3])
+        self.assertEqual(pack.indices["vertex"].tolist(), [0, 1, 2, 0, 2, 3, 4, 5, 6])
+        self.assertEqual(pack.batches["first_index"].tolist(), [0, 3, 6])
         self.assertEqual(pack.instances["world_from_local"][1].tolist(), [[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0]])
+        self.assertEqual(pack.voxel_grid["resolution"].tolist(), [[1, 1, 2]])
+        self.assertEqual(pack.batch_bvh["leaf"].tolist(), [pack_schema.NONE, 2, 34])
+        self.assertEqual([pack.text(node["name"]) for node in pack.nodes], ["pole", "cloth"])
+        self.assertEqual([pack_schema.INTERPOLATION[i] for i in pack.animation_channels["interpolation"]],
+                         ["linear", "step", "cubic_spline"])
         self.assertEqual(pack.image_data.tolist(), [i * 5 % 256 for i in range(52)])
 
     def test_names_and_enums(self):
@@ -52,7 +61,8 @@ class PackPython(unittest.TestCase):
 
     def test_damage_is_refused(self):
         good = self.path.read_bytes()
-        for at in range(len(good)):
+        table_end = pack_schema.FileHeader.itemsize + len(pack_schema.SECTIONS) * pack_schema.SectionEntry.itemsize
+        for at in [*range(0, table_end, 3), *range(table_end, len(good), 13)]:
             bad = bytearray(good)
             bad[at] ^= 0x10
             self.path.write_bytes(bad)

@@ -87,10 +87,10 @@ TEST(PackRoundTrip, APackStaysReadableWhenItIsReplaced) {
   write(folder / "a.pack", contents);
   const File before(folder / "a.pack");
   const Contents old = contents;
-  contents.lights.clear();
+  contents.cameras.clear();
   write(folder / "a.pack", contents);
   expect_same(before.view(), view_of(old));
-  EXPECT_TRUE(File(folder / "a.pack").view().lights.empty());
+  EXPECT_TRUE(File(folder / "a.pack").view().cameras.empty());
 }
 
 }  // namespace

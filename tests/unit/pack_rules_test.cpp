@@ -45,20 +45,20 @@ const Breach breaches[] = {
      "batches[1].material: 4294967295 is not below the 2 materials"},
     {"OptionalIndex", [](Contents& c) { c.materials[0].emissive_texture = 2; },
      "materials[0].emissive_texture: 2 is not below the 2 textures"},
-    {"LastIndex", [](Contents& c) { c.indices[5].vertex = 4; }, "indices[5].vertex: 4 is not below the 4 positions"},
-    {"Run", [](Contents& c) { c.batches[0].first_index = 6; },
-     "batches[0].first_index: 6 plus index_count 3 is past the 6 indices"},
+    {"LastIndex", [](Contents& c) { c.indices[8].vertex = 7; }, "indices[8].vertex: 7 is not below the 7 positions"},
+    {"Run", [](Contents& c) { c.batches[0].first_index = 9; },
+     "batches[0].first_index: 9 plus index_count 3 is past the 9 indices"},
     {"RunWraps", [](Contents& c) { c.batches[0].first_index = 0xFFFFFFFFu; },
-     "batches[0].first_index: 4294967295 plus index_count 3 is past the 6 indices"},
+     "batches[0].first_index: 4294967295 plus index_count 3 is past the 9 indices"},
     {"LongRunWraps", [](Contents& c) { c.images[0].first_byte = ~std::uint64_t{15}; },
      "images[0].first_byte: 18446744073709551600 plus size_bytes 44 is past the 52 image_data"},
     {"String", [](Contents& c) { c.materials[1].name.size_bytes = 1000; },
-     "materials[1].name.offset_bytes: 33 plus size_bytes 1000 is past the 70 strings"},
+     "materials[1].name.offset_bytes: 33 plus size_bytes 1000 is past the 89 strings"},
     {"StringWraps",
      [](Contents& c) {
        c.bake_info.source = {2, 0xFFFFFFFEu};
      },
-     "bake_info.source.offset_bytes: 2 plus size_bytes 4294967294 is past the 70 strings"},
+     "bake_info.source.offset_bytes: 2 plus size_bytes 4294967294 is past the 89 strings"},
     {"LargeBatch",
      [](Contents& c) {
        c.indices.resize(1539);
@@ -66,10 +66,10 @@ const Breach breaches[] = {
        c.batches[0].index_count = 1539;
      },
      "batches[0].index_count: 1539 is above 1536"},
-    {"SameCount", [](Contents& c) { c.vertex_attributes.pop_back(); }, "vertex_attributes: 3 records for 4 positions"},
+    {"SameCount", [](Contents& c) { c.vertex_attributes.pop_back(); }, "vertex_attributes: 6 records for 7 positions"},
     // Rules between fields
     {"IndicesOfNoTriangle", [](Contents& c) { c.indices.push_back({0}); },
-     "indices: 7 records are not a multiple of 3"},
+     "indices: 10 records are not a multiple of 3"},
     {"FirstIndexInATriangle", [](Contents& c) { c.batches[0].first_index = 2; },
      "batches[0].first_index: 2 is not a multiple of 3"},
     {"IndexCountOfNoTriangle", [](Contents& c) { c.batches[0].index_count = 4; },
@@ -81,9 +81,9 @@ const Breach breaches[] = {
     {"MaskedBeforeOpaque", [](Contents& c) { std::swap(c.batch_instances[0], c.batch_instances[2]); },
      "batch_instances[1]: not sorted by material, opaque ones first"},
     {"MaterialsInterleaved", [](Contents& c) { c.batch_instances.push_back(c.batch_instances[0]); },
-     "batch_instances[3]: not sorted by material, opaque ones first"},
-    {"DrawBounds", [](Contents& c) { c.batch_instances[2].bounds_min_ws.x = 4; },
-     "batch_instances[2].bounds_min_ws.x: 4 is above the maximum 3"},
+     "batch_instances[5]: not sorted by material, opaque ones first"},
+    {"DrawBounds", [](Contents& c) { c.batch_instances[3].bounds_min_ws.x = 4; },
+     "batch_instances[3].bounds_min_ws.x: 4 is above the maximum 3"},
     {"ImageNotAligned", [](Contents& c) { c.images[1].first_byte = 44; },
      "images[1].first_byte: 44 is not a multiple of 16"},
     {"ImageSize", [](Contents& c) { c.images[0].size_bytes = 40; },
@@ -146,7 +146,7 @@ TEST(PackRulesLimits, AreAllowed) {
   contents.positions[1].position_ls.x = std::numeric_limits<float>::denorm_min();
   contents.materials[0].uv1_mask = 31;
   contents.bake_info.batch_triangles = 512;
-  contents.bake_info.source = {70, 0};
+  contents.bake_info.source = {89, 0};
   write(folder / "a.pack", contents);
   EXPECT_EQ(open_error(folder / "a.pack"), "");
 }

@@ -4,7 +4,9 @@
 
 #include <stdlib.h>
 
+#include <cmath>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <iterator>
 
 #include "octahedral.h"
@@ -12,31 +14,39 @@
 namespace chandelier::pack::test {
 namespace {
 
-void add_geometry(Contents& c) {
-  c.positions = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, -0.5f}}};
-  for (std::uint32_t i = 0; i < 4; ++i) {
+/// Two triangles, the second one masked, and a banner of one triangle that bones move.
+void add_vertices(Contents& c) {
+  c.positions = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, -0.5f}}, {{0, 0, 0}}, {{0.5f, 0, 0}}, {{0, 0.5f, 0}}};
+  for (std::uint32_t i = 0; i < c.positions.size(); ++i) {
     const float f = static_cast<float>(i);
-    c.vertex_attributes.push_back({encode_normal({0, 0, 1}), encode_tangent({1, 0, 0, -1}), {0.25f * f, 0.5f}, {2.0f * f, -1}, 0xff804020u + i});
+    c.vertex_attributes.push_back(
+        {encode_normal({0, 0, 1}), encode_tangent({1, 0, 0, -1}), {0.25f * f, 0.5f}, {2.0f * f, -1}, 0xff804020u + i});
   }
-  c.indices = {{0}, {1}, {2}, {0}, {2}, {3}};
-  c.batches = {{{0, 0, 0}, 0, {1, 1, 0}, 3, {0, 0, -1}, 0.5f, {0, 0, 1}, 0, 1},
-               {{0, 0, -0.5f}, 3, {1, 1, 0}, 3, {}, 1, {}, 1, 0}};
-  c.meshes.push_back({.bounds_min_ls = {0, 0, -0.5f},
-                      .first_batch = 0,
-                      .bounds_max_ls = {1, 1, 0},
-                      .batch_count = 2,
-                      .first_vertex = 0,
-                      .vertex_count = 4});
+  c.indices = {{0}, {1}, {2}, {0}, {2}, {3}, {4}, {5}, {6}};
+  c.batches = {{{0, 0, 0}, 0, {1, 1, 0}, 3, {0, 0, -1}, 0.5f, {0, 0, 1}, 0, 0},
+               {{0, 0, -0.5f}, 3, {1, 1, 0}, 3, {}, 1, {}, 1, 0},
+               {{0, 0, 0}, 6, {0.5f, 0.5f, 0}, 3, {}, 1, {}, 1, 0}};
+  c.meshes = {{{0, 0, -0.5f}, 0, {1, 1, 0}, 2, 0, 3, 0, 4, 0, 0}, {{0, 0, 0}, 2, {0.5f, 0.5f, 0}, 1, 3, 1, 4, 3, 0, 3}};
+}
+
+/// The triangles stand on the left and on the right, the banner between them.
+void add_instances(Contents& c) {
   const StringRef left = add_string(c, "left"), right = add_string(c, "right");
   c.instances.push_back({{{{1, 0, 0, -2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0, 0, none, none, left});
   c.instances.push_back({{{{1, 0, 0, 2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0, 0, none, none, right});
-  c.batch_instances = {{{-2, 0, 0}, 0, {-1, 1, 0}, 0}, {{2, 0, 0}, 0, {3, 1, 0}, 1}, {{2, 0, -0.5f}, 1, {3, 1, 0}, 1}};
+  c.batch_instances = {{{-2, 0, 0}, 0, {-1, 1, 0}, 0},
+                       {{2, 0, 0}, 0, {3, 1, 0}, 1},
+                       {{-2, 0, -0.5f}, 1, {-1, 1, 0}, 0},
+                       {{2, 0, -0.5f}, 1, {3, 1, 0}, 1},
+                       {{0.5f, 0, 0}, 2, {1, 0.5f, 0}, 2}};
   c.bake_info.bounds_min_ws = {-2, 0, -0.5f};
   c.bake_info.bounds_max_ws = {3, 1, 0};
-  c.bake_info.unique_triangles = 2;
-  c.bake_info.instanced_triangles = 3;
+  c.bake_info.unique_triangles = 3;
+  c.bake_info.instanced_triangles = 5;
   c.bake_info.batch_triangles = 100;
   c.bake_info.range_threshold_lx = 0.05f;
+  c.bake_info.position_error_m = 0.001f;
+  c.bake_info.normal_error_rad = 0.0001f;
   c.bake_info.source = add_string(c, "hall.glb\nlamps.gltf");
 }
 
@@ -54,8 +64,9 @@ void add_materials(Contents& c) {
   leaf.double_sided = 1;
   leaf.name = add_string(c, "Blätter");
   c.materials = {stone, leaf};
-  c.textures = {{{{{1, 0, 0}, {0, 1, 0}}}, 0, Wrap::repeat, Wrap::mirrored_repeat, Filter::linear, Filter::nearest},
-                {{{{2, 0, 0.5f}, {0, 2, -0.25f}}}, 1, Wrap::clamp_to_edge, Wrap::repeat, Filter::linear, Filter::linear}};
+  c.textures = {
+      {{{{1, 0, 0}, {0, 1, 0}}}, 0, Wrap::repeat, Wrap::mirrored_repeat, Filter::linear, Filter::nearest},
+      {{{{2, 0, 0.5f}, {0, 2, -0.25f}}}, 1, Wrap::clamp_to_edge, Wrap::repeat, Filter::linear, Filter::linear}};
   c.images.push_back({0, 44, 4, 2, 3, ImageFormat::rgba8_srgb, add_string(c, "bricks.png")});  // 4×2, 2×1, 1×1
   c.images.push_back({48, 4, 1, 1, 1, ImageFormat::rgba8_unorm, add_string(c, "flat")});
   for (int i = 0; i < 52; ++i) c.image_data.push_back(static_cast<std::byte>(i * 5));
@@ -75,31 +86,114 @@ void add_lights(Contents& c) {
   point.priority = 128;
   point.name = add_string(c, "bulb");
   Light spot = point;
+  spot.position_ws = {1, 0.5f, -0.125f};
   spot.type = LightType::spot;
   spot.direction_ws = {0, -1, 0};
   spot.inner_cone_cos = 0.9f;
   spot.outer_cone_cos = 0.5f;
   spot.range_m = 15.8f;
   spot.range_source = RangeSource::derived;
+  spot.bounds_center_ws = {1, 0.5f - 15.8f * 0.5f, -0.125f};  // through the rim of a cone of more than 45°
+  spot.bounds_radius_m = 13.6833f;
+  spot.voxel = 1;
   spot.name = add_string(c, "torch");
   Light sun = point;
   sun.type = LightType::directional;
-  sun.position_ws = {0, 0, 0};
-  sun.range_m = 0;
+  sun.position_ws = sun.bounds_center_ws = {0, 0, 0};
+  sun.range_m = sun.bounds_radius_m = 0;
   sun.intensity = 1000;
   sun.range_source = RangeSource::unbounded;
+  sun.dynamic = sun.unclustered = 1;
+  sun.node = 0;
   sun.name = add_string(c, "sun");
   c.lights = {point, spot, sun};
   c.cameras.push_back({{0, 1, 5}, 0.8f, {0, 0, -1}, 1.5f, {0, 1, 0}, 0.1f, none, add_string(c, "eye")});
+}
+
+/// Two leaves below a root, and for the banner a leaf alone. The root of the lights touches both their spheres.
+void add_hierarchies(Contents& c) {
+  c.batch_bvh = {{{-2, 0, -0.5f}, 3, {3, 1, 0}, none},
+                 {{-2, 0, -0.5f}, 2, {-1, 1, 0}, 0 * 16 + 2},
+                 {{2, 0, -0.5f}, 3, {3, 1, 0}, 2 * 16 + 2}};
+  c.batch_bvh_items = {{0}, {2}, {1}, {3}};
+  c.instance_bvh = {{{-2, 0, -0.5f}, 3, {3, 1, 0}, none},
+                    {{-2, 0, -0.5f}, 2, {-1, 1, 0}, 0 * 16 + 1},
+                    {{2, 0, -0.5f}, 3, {3, 1, 0}, 1 * 16 + 1}};
+  c.instance_bvh_items = {{0}, {1}};
+  c.triangle_bvh = {{{0, 0, -0.5f}, 3, {1, 1, 0}, none},
+                    {{0, 0, 0}, 2, {1, 1, 0}, 0 * 16 + 1},
+                    {{0, 0, -0.5f}, 3, {1, 1, 0}, 1 * 16 + 1},
+                    {{0, 0, 0}, 4, {0.5f, 0.5f, 0}, 2 * 16 + 1}};
+  c.triangle_bvh_items = {{0}, {1}, {2}};
+  const float second_area = std::sqrt(1.5f) / 2;
+  c.triangle_bvh_areas = {{0.5f + second_area}, {0.5f}, {second_area}, {0.125f}};
+  const Light &bulb = c.lights[0], &torch = c.lights[1];
+  const glm::vec3 across = bulb.bounds_center_ws - torch.bounds_center_ws;
+  const float distance = glm::length(across);
+  const float radius = (bulb.bounds_radius_m + torch.bounds_radius_m + distance) / 2 * 1.00001f;
+  const glm::vec3 center = torch.bounds_center_ws + across * ((radius - torch.bounds_radius_m) / distance);
+  c.light_bvh = {{center, radius, 3, none},
+                 {bulb.bounds_center_ws, bulb.bounds_radius_m, 2, 0},
+                 {torch.bounds_center_ws, torch.bounds_radius_m, 3, 1}};
+}
+
+/// Two cells, one behind the other: the first triangles lie in the front one, the masked ones are cut in two.
+void add_voxels(Contents& c) {
+  c.voxel_grid.push_back({{-2, 0, -0.5f}, VoxelMode::clip, {5, 1, 0.25f}, {1, 1, 2}, 4, 0});
+  c.voxel_cells = {{0, 1}, {1, 3}};
+  c.voxel_runs = {{none, 1, 0, 6}, {0, 0, 6, 3}, {1, 0, 9, 3}, {none, 1, 12, 12}};
+  c.voxel_occupancy = {{3}};
+  for (const float x : {-2.0f, 2.0f}) {  // corners 0, 2 and 3 of the triangle, then where two of its edges are cut
+    c.voxel_vertices.push_back({{x, 0, 0}, {0, 0.5f}});
+    c.voxel_vertices.push_back({{x + 1, 1, 0}, {0.5f, 0.5f}});
+    c.voxel_vertices.push_back({{x, 1, -0.5f}, {0.75f, 0.5f}});
+    c.voxel_vertices.push_back({{x + 0.5f, 1, -0.25f}, {0.625f, 0.5f}});
+    c.voxel_vertices.push_back({{x, 0.5f, -0.25f}, {0.375f, 0.5f}});
+  }
+  c.voxel_indices = {{3}, {2}, {4}, {8}, {7}, {9}, {0}, {1}, {2}, {0}, {1}, {2},
+                     {0}, {1}, {3}, {0}, {3}, {4}, {5}, {6}, {8}, {5}, {8}, {9}};
+}
+
+/// A pole that turns, and on it a cloth that is moved and stretched; both bend the banner.
+void add_motion(Contents& c) {
+  const glm::vec4 no_rotation = {0, 0, 0, 1};
+  c.nodes.push_back({{{{1, 0, 0, 0.5f}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
+                     {0.5f, 0, 0},
+                     no_rotation,
+                     {1, 1, 1},
+                     none,
+                     add_string(c, "pole")});
+  c.nodes.push_back(
+      {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, {0, 0, 0}, no_rotation, {1, 1, 1}, 0, add_string(c, "cloth")});
+  const StringRef banner = add_string(c, "banner");
+  c.instances.push_back({{{{1, 0, 0, 0.5f}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1, 1, 1, 0, banner});
+  c.skins.push_back({0, 2, banner});
+  c.joints = {{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0}, {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1}};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const std::uint32_t first = 20000 * (i + 1);
+    c.skin_vertices.push_back({{0u | 1u << 16, 0}, {first | (65535 - first) << 16, 0}});
+  }
+  c.animations.push_back({0, 3, 1.5f, 0, add_string(c, "wave")});
+  c.animation_channels = {{0, AnimationPath::rotation, Interpolation::linear, 0, 2, 0, 8},
+                          {1, AnimationPath::translation, Interpolation::step, 0, 2, 8, 6},
+                          {1, AnimationPath::scale, Interpolation::cubic_spline, 2, 1, 14, 9}};
+  c.animation_times = {{0}, {1.5f}, {0.75f}};
+  for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 1.f, 0.f, 0.f}) c.animation_values.push_back({value});
+  for (const float value : {0.f, 0.f, 0.f, 0.f, 0.25f, 0.f}) c.animation_values.push_back({value});
+  for (const float value : {0.f, 0.f, 0.f, 1.f, 1.f, 1.f, 0.f, 0.f, 0.f}) c.animation_values.push_back({value});
 }
 
 }  // namespace
 
 Contents sample() {
   Contents contents;
-  add_geometry(contents);
+  add_vertices(contents);
+  add_instances(contents);
   add_materials(contents);
   add_lights(contents);
+  add_hierarchies(contents);
+  add_voxels(contents);
+  add_motion(contents);
   return contents;
 }
 

@@ -49,16 +49,17 @@ void PrintTo(const Lie& lie, std::ostream* out) {
 
 constexpr std::uint64_t huge = std::uint64_t{1} << 63;
 
-// Table: 0 bake_info, 1 strings, 2 positions (4 of 12 bytes), …, 13 cameras.
+// Table: 0 bake_info, 1 strings, 2 positions (7 of 12 bytes), …, 36 skin_vertices: all of them.
+constexpr std::size_t last = section_infos.size() - 1;
 const Lie lies[] = {
-    {"Version", [](Parts& p) { p.header.version = 2; }, "a pack of another version, bake it again (2)"},
+    {"Version", [](Parts& p) { p.header.version = 1; }, "a pack of another version, bake it again (1)"},
     {"Layout", [](Parts& p) { p.header.schema_hash = 5; }, "a pack of another layout, bake it again (5)"},
     {"FileSize", [](Parts& p) { --p.header.file_bytes; }, "header.file_bytes: "},
     {"TooManySections", [](Parts& p) { p.header.section_count = 257; }, "header.section_count: 257 is above 256"},
-    {"SectionsPastTheEnd", [](Parts& p) { p.header.section_count = 200; }, "header.section_count: 200 do not fit"},
-    {"FewerSections", [](Parts& p) { p.header.section_count = 13; }, "header.table_checksum: "},
+    {"SectionsPastTheEnd", [](Parts& p) { p.header.section_count = 256; }, "header.section_count: 256 do not fit"},
+    {"FewerSections", [](Parts& p) { p.header.section_count = last; }, "header.table_checksum: "},
     {"TableChecksum", [](Parts& p) { ++p.header.table_checksum; }, "header.table_checksum: "},
-    {"UnknownKind", [](Parts& p) { p.table[13].kind = 15; }, "table[13].kind: unknown, or not above"},
+    {"UnknownKind", [](Parts& p) { p.table[last].kind = last + 2; }, "table[36].kind: unknown, or not above"},
     {"KindZero", [](Parts& p) { p.table[0].kind = 0; }, "table[0].kind: unknown, or not above"},
     {"KindTwice", [](Parts& p) { p.table[3].kind = 3; }, "table[3].kind: unknown, or not above"},
     {"KindsDescend", [](Parts& p) { std::swap(p.table[2], p.table[3]); }, "table[2].offset_bytes: "},
@@ -70,14 +71,14 @@ const Lie lies[] = {
     {"OffsetOverlaps", [](Parts& p) { p.table[2].offset_bytes -= 256; }, "table[2].offset_bytes: "},
     {"OffsetLeavesAGap", [](Parts& p) { p.table[2].offset_bytes += 256; }, "table[2].offset_bytes: "},
     {"OffsetHuge", [](Parts& p) { p.table[2].offset_bytes = ~std::uint64_t{255}; }, "table[2].offset_bytes: "},
-    {"SizePastTheEnd", [](Parts& p) { p.table[13].size_bytes += 56; }, "table[13].size_bytes: "},
+    {"SizePastTheEnd", [](Parts& p) { p.table[last].size_bytes += 16; }, "table[36].size_bytes: "},
     {"SizeWraps", [](Parts& p) { p.table[2].size_bytes = ~std::uint64_t{11}; }, "table[2].size_bytes: "},
     {"SizeZero", [](Parts& p) { p.table[2].size_bytes = p.table[2].count = 0; },
      "table[2].size_bytes: 0 where 12 must"},
-    {"Count", [](Parts& p) { p.table[2].count = 5; }, "table[2].count: 5 of 12 bytes are not the size 48"},
+    {"Count", [](Parts& p) { p.table[2].count = 5; }, "table[2].count: 5 of 12 bytes are not the size 84"},
     {"CountWraps", [](Parts& p) { p.table[4].count += huge; },
      "table[4].count: "},  // 4 bytes each: 2^63 · 4 wraps to 0
-    {"SizeNoMultiple", [](Parts& p) { --p.table[2].size_bytes; }, "table[2].count: 4 of 12 bytes are not the size 47"},
+    {"SizeNoMultiple", [](Parts& p) { --p.table[2].size_bytes; }, "table[2].count: 7 of 12 bytes are not the size 83"},
     {"Checksum", [](Parts& p) { ++p.table[2].checksum; }, "table[2].checksum: "},
     {"TwoBakeInfos",
      [](Parts& p) {
