@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "pack_checks_lights.h"
+
 namespace chandelier::pack {
 namespace {
 
@@ -142,6 +144,7 @@ std::string check(const View& view) {
   if (std::string line = order_fault(view); !line.empty()) return line;
   if (std::string line = first_fault("images", view.images); !line.empty()) return line;
   if (std::string line = first_fault("lights", view.lights); !line.empty()) return line;
+  if (std::string line = light_fault(view); !line.empty()) return line;
   return first_fault("cameras", view.cameras);
 }
 
