@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // chandelier-bake: glTF scenes in, one pack out.
 #include <fmt/core.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,25 +9,32 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
+#include <set>
 
 #include "bake/bake.h"
+#include "depfile.h"
 #include "import/import.h"
 #include "options.h"
 #include "pack_file.h"
+#include "report_json.h"
 
 namespace {
 
 using namespace chandelier;
 
-void print_summary(const pack::Contents& pack, std::uintmax_t bytes, double seconds) {
-  const auto triangles = static_cast<double>(pack.bake_info.unique_triangles);
-  const double mean = pack.batches.empty() ? 0 : triangles / static_cast<double>(pack.batches.size());
+using baker::Outcome;
+using Shown = baker::Progress::Shown;
+
+void print_summary(const Outcome& outcome) {
+  const auto triangles = static_cast<double>(outcome.triangles);
+  const double mean = outcome.batches == 0 ? 0 : triangles / static_cast<double>(outcome.batches);
   fmt::print("{} triangles ({} instanced), {} batches of {:.1f} on average, {} images, {} lights, {} bytes, {:.2f} s\n",
-             pack.bake_info.unique_triangles, pack.bake_info.instanced_triangles, pack.batches.size(), mean,
-             pack.images.size(), pack.lights.size(), bytes, seconds);
+             outcome.triangles, outcome.instanced_triangles, outcome.batches, mean, outcome.images, outcome.lights,
+             outcome.pack_bytes, outcome.seconds);
 }
 
-/// Before a bake that may take minutes: whether its pack could be written.
+/// Before a bake that may take minutes: whether its results could be written.
 void check_output(const std::filesystem::path& output) {
   std::error_code error;
   const std::string folder = output.has_parent_path() ? output.parent_path().string() : ".";
@@ -60,23 +68,91 @@ auto with_memory_for(const std::string& where, Work work) {
   }
 }
 
-void run(const baker::Options& options) {
-  const baker::Progress progress(!options.quiet && isatty(STDERR_FILENO));
-  check_output(options.output);
-  baker::Scene scene;
-  baker::Warnings warnings;
-  for (const std::filesystem::path& input : options.inputs) {
-    progress.next("reading " + input.string());
-    with_memory_for(input.string(), [&] { baker::import_gltf(input, scene, warnings); });
+Shown shown_progress(const baker::Options& options) {
+  if (options.quiet) return Shown::nothing;
+  if (options.verbose) return Shown::all_passes;
+  return isatty(STDERR_FILENO) ? Shown::rewritten : Shown::slow_passes;
+}
+
+/// All that is written besides stdout.
+std::vector<std::filesystem::path> outputs_of(const baker::Options& options) {
+  std::vector<std::filesystem::path> out = {options.output};
+  for (const std::filesystem::path& path : {options.depfile, options.json}) {
+    if (!path.empty() && path != "-") out.push_back(path);
   }
-  refuse_overwriting_an_input(scene.files_read, options.output);
-  baker::Report report;
-  const pack::Contents pack = with_memory_for(
-      "scene", [&] { return baker::bake(std::move(scene), options.bake, progress, report, warnings); });
-  progress.next("writing " + options.output.string());
-  pack::write(options.output, pack);
-  for (const std::string& line : warnings.lines()) fmt::print(stderr, "chandelier-bake: warning: {}\n", line);
-  if (!options.quiet) print_summary(pack, std::filesystem::file_size(options.output), progress.seconds());
+  return out;
+}
+
+void check_outputs(const baker::Options& options) {
+  std::set<std::filesystem::path> seen;
+  for (const std::filesystem::path& output : outputs_of(options)) {
+    check_output(output);
+    if (!seen.insert(std::filesystem::weakly_canonical(output)).second) {
+      baker::fail(output.string(), "is named as two outputs");
+    }
+  }
+}
+
+pack::Contents make_pack(const baker::Options& options, const baker::Progress& progress, baker::Warnings& warnings,
+                         Outcome& outcome) {
+  baker::Scene scene;
+  outcome.report.run("import", [&](baker::PassReport&) {
+    for (const std::filesystem::path& input : options.inputs) {
+      progress.next("reading " + input.string());
+      with_memory_for(input.string(), [&] { baker::import_gltf(input, scene, warnings); });
+    }
+  });
+  outcome.files_read = scene.files_read;
+  for (const auto& output : outputs_of(options)) refuse_overwriting_an_input(outcome.files_read, output);
+  return with_memory_for(
+      "scene", [&] { return baker::bake(std::move(scene), options.bake, progress, outcome.report, warnings); });
+}
+
+/// The depfile comes first: with the new pack and the old depfile, a file that is newly read could change unnoticed.
+void write_pack(const baker::Options& options, const pack::Contents& pack, Outcome& outcome) {
+  if (!options.depfile.empty()) {
+    pack::write_text(options.depfile, baker::depfile_text(options.output, outcome.files_read));
+  }
+  outcome.report.run("write", [&](baker::PassReport& pass) {
+    pack::write(options.output, pack);
+    pass.bytes = outcome.pack_bytes = std::filesystem::file_size(options.output);
+  });
+  outcome.triangles = pack.bake_info.unique_triangles;
+  outcome.instanced_triangles = pack.bake_info.instanced_triangles;
+  outcome.batches = pack.batches.size();
+  outcome.images = pack.images.size();
+  outcome.lights = pack.lights.size();
+}
+
+void tell(const baker::Options& options, const Outcome& outcome) {
+  for (const std::string& line : outcome.warnings) fmt::print(stderr, "chandelier-bake: warning: {}\n", line);
+  if (options.json == "-") {
+    fmt::print("{}", baker::report_json(options, outcome));
+    return;
+  }
+  if (!options.json.empty()) pack::write_text(options.json, baker::report_json(options, outcome));
+  if (!options.quiet) print_summary(outcome);
+}
+
+void run(const baker::Options& options) {
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0) {
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  }
+  const baker::Progress progress(shown_progress(options));
+  check_outputs(options);
+  for (const auto& output : outputs_of(options)) {
+    pack::remove_stale_files(output.has_parent_path() ? output.parent_path() : ".");
+  }
+  Outcome outcome;
+  outcome.report.progress = &progress;
+  baker::Warnings warnings;
+  const pack::Contents pack = make_pack(options, progress, warnings, outcome);
+  write_pack(options, pack, outcome);
+  outcome.warnings = warnings.lines();
+  outcome.seconds = progress.seconds();
+  progress.clear();
+  tell(options, outcome);
 }
 
 }  // namespace

@@ -5,15 +5,20 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "bake/voxel_grid.h"
 #include "error.h"
 
 namespace chandelier::baker {
 namespace {
 
+constexpr const char* kBakingGroup = "Baking";
+
 constexpr const char* kExamples = R"(Examples:
   chandelier-bake scene.glb -o scene.chandelier
   chandelier-bake hall.gltf lamps.gltf -o hall.chandelier     a scene and its lights from two files
   chandelier-bake city.gltf -o city.chandelier --batch-triangles 128 --range-threshold 0.2
+  chandelier-bake hall.gltf -o hall.chandelier --cache ~/.cache/chandelier --depfile hall.d     in a build
+  chandelier-bake hall.gltf -o hall.chandelier --json -                                         for a program
 
 Exit code: 0 baked, 1 failed (one line on stderr says why; an older pack stays as it was), 2 wrong usage.)";
 
@@ -49,6 +54,46 @@ std::string check_smooth_angle(const std::string& text) {
   return {};
 }
 
+/// N, or NX,NY,NZ: cells along each axis, at least one along all or none at all.
+std::optional<std::array<std::uint32_t, 3>> resolution_of(const std::string& text) {
+  const std::vector<std::string> parts = CLI::detail::split(text, ',');
+  std::array<std::uint32_t, 3> out{};
+  if (parts.size() != 1 && parts.size() != 3) return std::nullopt;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string& part = parts[parts.size() == 1 ? 0 : axis];
+    if (!CLI::detail::lexical_cast(part, out[axis]) || out[axis] > kMostVoxelsOnAxis) return std::nullopt;
+  }
+  if (out[0] == 0 && out[1] == 0 && out[2] == 0) return out;
+  const std::uint64_t cells = std::uint64_t{out[0]} * out[1] * out[2];
+  return cells > 0 && cells <= kMostVoxels ? std::optional(out) : std::nullopt;
+}
+
+std::string check_voxels(const std::string& text) {
+  if (resolution_of(text)) return {};
+  return "must be N or NX,NY,NZ, each from 1 to " + std::to_string(kMostVoxelsOnAxis) + " and at most " +
+         std::to_string(kMostVoxels) + " cells in all, or 0 (" + text + ")";
+}
+
+std::string check_voxel_large(const std::string& text) {
+  return text == "separate" || text == "clip" ? "" : "must be separate or clip (" + text + ")";
+}
+
+void add_voxel_options(CLI::App& app, VoxelSettings& voxels) {
+  app.add_option_function<std::string>(
+         "--voxels", [&voxels](const std::string& text) { voxels.resolution = *resolution_of(text); },
+         "Cells of the voxel grid along each axis, N or NX,NY,NZ; 0 makes none")
+      ->default_str("32")
+      ->check(CLI::Validator(check_voxels, ""));
+  app.add_option_function<std::string>(
+         "--voxel-large",
+         [&voxels](const std::string& text) {
+           voxels.mode = text == "clip" ? pack::VoxelMode::clip : pack::VoxelMode::separate;
+         },
+         "Triangles over more than two cells: separate draws them always, clip cuts all to cells")
+      ->default_str("separate")
+      ->check(CLI::Validator(check_voxel_large, ""));
+}
+
 template <int Least, int Most>
 std::string check_whole_number(const std::string& text) {
   int value = 0;
@@ -58,6 +103,33 @@ std::string check_whole_number(const std::string& text) {
   return {};
 }
 
+/// What a build system wants of any tool.
+void add_build_options(CLI::App& app, Options& options) {
+  app.option_defaults()->group("Build step");
+  app.add_option("--cache", options.cache,
+                 "Folder that keeps what was baked, for bakes of the same files; made if need be");
+  app.add_option("--depfile", options.depfile, "Write which files were read, for Ninja and Make");
+  app.add_option("--json", options.json, "Write a report: times, counts and bytes of each pass, warnings; - is stdout");
+  app.add_option("-j,--threads", options.threads, "Threads; 0: all cores. The pack is the same for any number")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1024));
+  auto* quiet = app.add_flag("-q,--quiet", options.quiet, "No progress and no summary; warnings and errors stay");
+  app.add_flag("-v,--verbose", options.verbose, "A line for each pass")->excludes(quiet);
+}
+
+/// The options that shape the pack, as they were given or by default.
+std::vector<std::pair<std::string, std::string>> settings_of(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group() != kBakingGroup) continue;
+    const bool flag = option->get_expected_max() == 0;
+    std::string value = flag ? "false" : option->get_default_str();
+    if (option->count() > 0) value = flag ? "true" : option->results().back();
+    out.emplace_back(option->get_single_name(), value);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
@@ -65,8 +137,10 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   CLI::App app("Bakes glTF scenes into a pack for chandelier-play. Several inputs are merged into one scene.",
                "chandelier-bake");
   app.footer(kExamples);
+  app.set_version_flag("--version", "chandelier-bake " CHANDELIER_VERSION);
   app.add_option("SCENE", options.inputs, "glTF 2.0 files, .gltf or .glb")->required();
   app.add_option("-o,--output", options.output, "The pack to write, PACK.chandelier")->required();
+  app.option_defaults()->group(kBakingGroup);
   app.add_option("--batch-triangles", options.bake.batch_triangles,
                  "Most triangles in a batch, a multiple of 4 up to 512")
       ->capture_default_str()
@@ -90,9 +164,11 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
                  "Where normals are missing, smooth edges up to this angle, degrees; 0 makes all flat, as glTF asks")
       ->capture_default_str()
       ->check(CLI::Validator(check_smooth_angle, ""));
-  app.add_flag("-q,--quiet", options.quiet, "No progress and no summary; warnings and errors stay");
+  add_voxel_options(app, options.bake.voxels);
+  add_build_options(app, options);
   try {
     app.parse(argc, argv);
+    options.settings = settings_of(app);
     return options;
   } catch (const CLI::CallForHelp& help) {
     exit_code = app.exit(help);

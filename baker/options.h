@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/bake.h"
@@ -14,7 +16,13 @@ struct Options {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   BakeSettings bake;
+  std::vector<std::pair<std::string, std::string>> settings;  // the same as text: each option's name and value
+  std::filesystem::path cache;                                // empty: none
+  std::filesystem::path depfile;                              // empty: none
+  std::filesystem::path json;                                 // empty: none; "-": stdout
+  int threads = 0;                                            // 0: all
   bool quiet = false;
+  bool verbose = false;
 };
 
 /// Returns nothing and sets `exit_code` where there is nothing to bake: --help (0) or a usage error (2).

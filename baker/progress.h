@@ -1,29 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines on stderr that tell someone who waits at a terminal what the bake is doing.
+// Tells someone who waits what the bake is doing, on stderr.
 #pragma once
 
 #include <chrono>
-#include <cstdio>
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace chandelier::baker {
 
 class Progress {
  public:
-  explicit Progress(bool shown) : shown_(shown) {}
+  enum class Shown {
+    nothing,
+    slow_passes,  // a line after each pass that took more than a second
+    all_passes,   // a line after each pass
+    rewritten,    // one line of a terminal, which is never left behind
+  };
+
+  explicit Progress(Shown shown);
+  explicit Progress(bool terminal) : Progress(terminal ? Shown::rewritten : Shown::nothing) {}
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
 
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
-  /// Says what comes next, unless the bake has been too short for anyone to wonder.
-  void next(const std::string& what) const {
-    constexpr double kPatience_s = 1.0;
-    if (shown_ && seconds() > kPatience_s)
-      std::fprintf(stderr, "chandelier-bake: %.1f s: %s\n", seconds(), what.c_str());
-  }
+  /// A pass begins, and ends; Report::run() says so.
+  void begin(const std::string& pass) const;
+  void end(const std::string& pass, double ms) const;
+
+  /// What the pass does now: "decoding 12 images".
+  void next(const std::string& what) const;
+
+  /// How far the pass is. Any thread may say so.
+  void advance(std::size_t done, std::size_t total) const;
+
+  /// Takes the rewritten line away, before something else is said on stderr.
+  void clear() const;
 
  private:
-  bool shown_;
+  void rewrite() const;  // with mutex_ held
+
+  Shown shown_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  mutable std::mutex mutex_;
+  mutable std::string what_;
+  mutable std::size_t done_ = 0, total_ = 0;
+  mutable bool visible_ = false;
+  std::condition_variable_any stopped_;
+  std::jthread ticker_;  // only at a terminal, so that the seconds run
 };
 
 }  // namespace chandelier::baker

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "progress.h"
+
 namespace chandelier::baker {
 
 /// One pass. Counts are what it wants to tell, in its order: "triangles", "shells", "sah_cost", …
@@ -21,6 +23,7 @@ struct PassReport {
 };
 
 struct Report {
+  const Progress* progress = nullptr;  // told of each pass
   std::vector<PassReport> passes;
 
   /// Runs `work(pass)` and notes how long it took.
@@ -28,9 +31,11 @@ struct Report {
   void run(const std::string& name, Work work) {
     PassReport pass;
     pass.name = name;
+    if (progress) progress->begin(name);
     const auto start = std::chrono::steady_clock::now();
     work(pass);
     pass.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    if (progress) progress->end(name, pass.ms);
     passes.push_back(std::move(pass));
   }
 };
