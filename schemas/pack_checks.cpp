@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "pack_checks_lights.h"
+#include "pack_checks_voxels.h"
 
 namespace chandelier::pack {
 namespace {
@@ -145,6 +146,7 @@ std::string check(const View& view) {
   if (std::string line = first_fault("images", view.images); !line.empty()) return line;
   if (std::string line = first_fault("lights", view.lights); !line.empty()) return line;
   if (std::string line = light_fault(view); !line.empty()) return line;
+  if (std::string line = voxel_fault(view); !line.empty()) return line;
   return first_fault("cameras", view.cameras);
 }
 

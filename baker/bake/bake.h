@@ -7,6 +7,7 @@
 #include "../report.h"
 #include "../scene.h"
 #include "pack_schema.h"
+#include "voxel_bins.h"
 
 namespace chandelier::baker {
 
@@ -16,6 +17,7 @@ struct BakeSettings {
   float position_error_m = 0.0005f;     // most that a vertex may be moved in the world; 0 keeps floats
   int normal_bits = 10;                 // of each of a normal's and a tangent's two numbers, 8 to 16
   int uv_bits = 14;                     // of a texture coordinate after the point, up to 20; 0 keeps floats
+  VoxelSettings voxels;
   float smooth_angle_deg = 0;           // missing normals: neighbours within this are smoothed; 0: all flat
 };
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles cut at the faces of a grid's cells (Sutherland and Hodgman 1974), so that every point of one is in one
+// cell.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <utility>
+#include <vector>
+
+#include "pack_schema.h"
+#include "voxel_grid.h"
+#include "voxel_pieces.h"
+
+namespace chandelier::baker {
+
+struct ClipVertex {
+  glm::dvec3 position{0};
+  glm::dvec2 uv{0};
+};
+using ClipPolygon = std::vector<ClipVertex>;  // convex
+
+/// Splits a polygon in two at a plane that crosses it; corners in the plane come into both.
+void split(const ClipPolygon& polygon, int axis, double plane, ClipPolygon& below, ClipPolygon& above);
+
+/// Cuts triangles to cells; keeps its memory between them.
+class Clipper {
+ public:
+  explicit Clipper(const Grid& grid) : grid_(grid) {}
+
+  /// Calls emit(cell, polygon) for each cell that holds a part of the triangle. Cells are half open: what lies in a
+  /// plane between two is in the upper one alone, unless it is the border of something below.
+  template <typename Emit>
+  void cut(const std::array<ClipVertex, 3>& triangle, Emit emit) {
+    parts_[0].assign(triangle.begin(), triangle.end());
+    cut_axis(0, emit);
+  }
+
+ private:
+  template <typename Emit>
+  void cut_axis(int axis, Emit& emit) {
+    if (axis == 3) {
+      emit(grid_.number(cell_), std::as_const(parts_[3]));
+      return;
+    }
+    ClipPolygon &rest = parts_[static_cast<std::size_t>(axis)], &part = parts_[static_cast<std::size_t>(axis) + 1];
+    double low = rest[0].position[axis], high = low;
+    for (const ClipVertex& vertex : rest) {
+      low = std::min(low, vertex.position[axis]);
+      high = std::max(high, vertex.position[axis]);
+    }
+    cell_[axis] = grid_.cell_of(axis, low);
+    for (; cell_[axis] + 1 < grid_.resolution[axis]; ++cell_[axis]) {
+      const double plane = grid_.plane(axis, cell_[axis] + 1);
+      if (high <= plane) break;
+      split(rest, axis, plane, part, above_);
+      rest.swap(above_);
+      cut_axis(axis + 1, emit);
+    }
+    part.swap(rest);
+    cut_axis(axis + 1, emit);
+  }
+
+  const Grid& grid_;
+  glm::ivec3 cell_{0};
+  std::array<ClipPolygon, 4> parts_;  // still to be cut along x, y, z, and what is done
+  ClipPolygon above_;
+};
+
+/// Vertices, equal ones once, in the order of their first occurrence.
+class UniqueVertices {
+ public:
+  /// Makes it empty, with room for this many.
+  void reset(std::size_t most_vertices);
+  /// The number of the vertex that equals this one, which is appended where there is none.
+  std::uint32_t add(const pack::VoxelVertex& vertex);
+  const std::vector<pack::VoxelVertex>& vertices() const { return vertices_; }
+
+ private:
+  std::vector<pack::VoxelVertex> vertices_;
+  std::vector<std::uint32_t> slots_;  // open addressing: numbers of vertices; a power of two, at most half full
+};
+
+constexpr std::uint64_t kMostClippedTriangles = std::uint64_t{1} << 28;
+
+/// Appends a batch's triangles to `block`, cut to cells, each piece with vertices of its own. `total` counts the
+/// triangles of all blocks. Throws Error where they become more than kMostClippedTriangles.
+void bin_clipped(const PlacedBatch& placed, const Grid& grid, std::atomic<std::uint64_t>& total, VoxelBlock& block);
+
+}  // namespace chandelier::baker

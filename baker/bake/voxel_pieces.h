@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What voxel bins are put together from: the triangles of one batch instance in one cell.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pack_schema.h"
+#include "triangle_box.h"
+#include "voxel_grid.h"
+
+namespace chandelier::baker {
+
+struct VoxelPiece {
+  std::uint32_t cell = 0;  // the grid's count of cells: no cell, always drawn
+  std::uint32_t batch_instance = 0;
+  std::uint32_t triangle_count = 0;
+  std::uint32_t block = 0;         // whose arrays the rest points into
+  std::uint32_t first_number = 0;  // pack::none: the whole batch
+  std::uint32_t first_vertex = 0;  // clipped only
+  std::uint32_t vertex_count = 0;
+};
+
+/// The pieces of some batch instances in a row; blocks are what threads work on.
+struct VoxelBlock {
+  std::vector<VoxelPiece> pieces;
+  std::vector<std::uint16_t> numbers;       // separate: triangles of the batch; clipped: corners, from first_vertex on
+  std::vector<pack::VoxelVertex> vertices;  // clipped only
+  double input_area_m2 = 0;                 // clipped only
+  double clipped_area_m2 = 0;
+};
+
+/// A batch in its place, in double precision.
+class PlacedBatch {
+ public:
+  PlacedBatch(const pack::Contents& pack, std::uint32_t batch_instance);
+
+  const pack::Contents& pack;
+  const std::uint32_t batch_instance;
+  const pack::Batch& batch;
+  const pack::Instance& instance;
+
+  std::uint32_t triangle_count() const { return batch.index_count / 3; }
+  std::uint32_t vertex(std::uint32_t triangle, std::uint32_t corner) const {
+    return pack.indices[batch.first_index + 3 * triangle + corner].vertex;
+  }
+  Triangle triangle_ws(std::uint32_t triangle) const {
+    return {corner_ws(triangle, 0), corner_ws(triangle, 1), corner_ws(triangle, 2)};
+  }
+  /// No corner of triangle_ws is farther than this from where it is, along each axis, nor is Grid's about_cell_of more
+  /// than this from the plane that it should be at: 2⁻⁴⁷ times the largest number that goes into either.
+  double slack_m(const Grid& grid) const;
+
+ private:
+  glm::dvec3 corner_ws(std::uint32_t triangle, std::uint32_t corner) const {
+    const glm::dvec3 p(pack.positions[vertex(triangle, corner)].position_ls);
+    return x_ * p.x + y_ * p.y + z_ * p.z + origin_;
+  }
+  glm::dvec3 x_, y_, z_, origin_;  // columns of world_from_local
+};
+
+/// Appends a batch's triangles to `block`: with each cell where they overlap at most two, else with no cell.
+void bin_separate(const PlacedBatch& placed, const Grid& grid, VoxelBlock& block);
+
+}  // namespace chandelier::baker
