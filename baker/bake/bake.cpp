@@ -10,6 +10,7 @@
 #include "batches.h"
 #include "images.h"
 #include "instances.h"
+#include "light_bvh.h"
 #include "lights.h"
 #include "normals.h"
 #include "pack_checks.h"
@@ -68,6 +69,12 @@ void bake_lights(const Scene& scene, const BakeSettings& settings, Report& repor
   report.run("lights", [&](PassReport& pass) {
     make_lights(scene, settings.range_threshold_lx, strings, pack);
     pass.bytes = bytes_of(pack.lights);
+    pass.count("lights", static_cast<double>(pack.lights.size()));
+  });
+  report.run("light_bvh", [&](PassReport& pass) {
+    pack.light_bvh = build_light_bvh(pack.lights);
+    pass.bytes = bytes_of(pack.light_bvh);
+    pass.count("nodes", static_cast<double>(pack.light_bvh.size()));
   });
 }
 

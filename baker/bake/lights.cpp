@@ -6,6 +6,9 @@
 #include <cfloat>
 #include <cmath>
 
+#include "light_bounds.h"
+#include "voxel_grid.h"
+
 namespace chandelier::baker {
 
 float derived_range_m(float intensity_cd, const glm::vec3& color, float threshold_lx) {
@@ -22,7 +25,10 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     out.color = light.color;
     out.inner_cone_cos = 1;
     out.outer_cone_cos = -1;
-    out.priority = 128;
+    out.priority = light.priority;
+    out.dynamic = light.dynamic || light.node != kNone;
+    out.unclustered = light.unclustered;
+    out.node = light.node;
     out.bounds_center_ws = light.position_ws;
     out.name = strings.add(light.name);
     if (light.type == LightType::directional) {
@@ -34,11 +40,14 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     out.type = light.type == LightType::spot ? pack::LightType::spot : pack::LightType::point;
     out.range_source = light.range_m ? pack::RangeSource::authored : pack::RangeSource::derived;
     out.range_m = light.range_m ? *light.range_m : derived_range_m(light.intensity, light.color, range_threshold_lx);
-    out.bounds_radius_m = out.range_m;
     if (light.type == LightType::spot) {
       out.inner_cone_cos = std::cos(light.inner_cone_rad);
       out.outer_cone_cos = std::cos(light.outer_cone_rad);
     }
+    const FloatSphere bounds = rounded_outwards(light_bounds(out));
+    out.bounds_center_ws = bounds.center;
+    out.bounds_radius_m = bounds.radius;
+    if (!pack.voxel_grid.empty()) out.voxel = cell_at(pack.voxel_grid[0], out.position_ws);
     pack.lights.push_back(out);
   }
 }
@@ -51,6 +60,7 @@ void make_cameras(const Scene& scene, Strings& strings, pack::Contents& pack) {
                             .aspect = camera.aspect,
                             .up_ws = camera.up_ws,
                             .znear_m = camera.znear_m,
+                            .node = camera.node,
                             .name = strings.add(camera.name)});
   }
 }

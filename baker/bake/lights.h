@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: lights with a range each, and cameras.
+// Pass: lights with a range, bounds and a voxel each, and cameras.
 #pragma once
 
 #include "../scene.h"
@@ -11,6 +11,7 @@ namespace chandelier::baker {
 /// The distance at which the light's illuminance, falling with its square, is `threshold_lx`.
 float derived_range_m(float intensity_cd, const glm::vec3& color, float threshold_lx);
 
+/// After the voxels, in whose cells lights are placed.
 void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings, pack::Contents& pack);
 void make_cameras(const Scene& scene, Strings& strings, pack::Contents& pack);
 
