@@ -62,6 +62,7 @@ void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& p
   report.run("batch_bvh", [&](PassReport& pass) { make_batch_bvh(pass, pack); });
   report.run("instance_bvh", [&](PassReport& pass) { make_instance_bvh(pass, pack); });
   report.run("triangle_bvh", [&](PassReport& pass) { make_triangle_bvh(pass, pack); });
+  report.run("voxels", [&](PassReport& pass) { make_voxels(settings.voxels, progress, pack, pass); });
 }
 
 void bake_lights(const Scene& scene, const BakeSettings& settings, Report& report, [[maybe_unused]] Warnings& warnings,
