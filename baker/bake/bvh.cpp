@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0
+// Binned SAH (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies"): the items' centres fall into
+// equal bins along each axis, and a node is cut at the bin border where area times weight, summed over both sides, is
+// least.
+#include "bvh.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace chandelier::baker {
+namespace {
+
+/// Four floats in one register, with GCC's and Clang's operators; the last one is unused.
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+constexpr std::size_t kMostBins = 32;
+constexpr float kTraversalCost = 1;            // of a node, where an item costs 1
+constexpr std::size_t kMostTried = 4;          // up to here, every way to share the items out is tried
+constexpr std::size_t kBlockNodes = 16384;     // that one thread writes
+constexpr std::size_t kParallelItems = 16384;  // from here on, a node's two sides are built by two threads
+constexpr std::size_t kSamples = 16384;        // of a node with twice as many items or more, to choose its cut from
+constexpr std::size_t kMostLeafItems = 15;     // what four bits hold
+constexpr int kSahDepth = 64;  // below, nodes are cut into halves, so that no input makes a tree of a path
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Float4 min(Float4 a, Float4 b) {
+  return a < b ? a : b;
+}
+Float4 max(Float4 a, Float4 b) {
+  return a > b ? a : b;
+}
+Float4 load(const glm::vec3& v) {
+  return Float4{v.x, v.y, v.z, 0};
+}
+
+struct Box {
+  Float4 low = {kInfinity, kInfinity, kInfinity, 0};
+  Float4 high = {-kInfinity, -kInfinity, -kInfinity, 0};
+
+  void add(Float4 other_low, Float4 other_high) {
+    low = min(low, other_low);
+    high = max(high, other_high);
+  }
+  void add(const Box& other) { add(other.low, other.high); }
+  float half_area() const {
+    const Float4 size = high - low;
+    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  }
+};
+
+Box box_of(const BvhItem& item) {
+  return {load(item.low), load(item.high)};
+}
+
+/// Halves before the sum, which may be beyond a float.
+Float4 centre(const BvhItem& item) {
+  return 0.5f * load(item.low) + 0.5f * load(item.high);
+}
+
+/// Where along each axis a centre lies, in bins.
+struct Binning {
+  Float4 low, scale;
+  std::size_t bins;
+
+  Binning(const Box& centres, std::size_t items) : low(centres.low), bins(std::min(kMostBins, 4 + items / 8)) {
+    const Float4 size = centres.high - centres.low;
+    for (int axis = 0; axis < 4; ++axis) {
+      // Neither an axis without an extent nor one whose extent is beyond a float can be cut.
+      const float per_metre = static_cast<float>(bins) / size[axis];
+      scale[axis] = axis < 3 && std::isfinite(per_metre) ? per_metre : 0;
+    }
+  }
+  bool can_cut(int axis) const { return scale[axis] > 0; }
+  Int4 of(Float4 at) const {
+    const float last = static_cast<float>(bins - 1);
+    const Float4 most = {last, last, last, last}, least = {0, 0, 0, 0};
+    return __builtin_convertvector(max(min((at - low) * scale, most), least), Int4);  // 0 or last for NaN
+  }
+};
+
+/// Without a constructor, so that making many costs nothing; empty() is what they start from.
+struct Bin {
+  Float4 low, high;
+  std::uint32_t items;
+
+  static Bin empty() { return {Box().low, Box().high, 0}; }
+  float cost() const { return Box{low, high}.half_area() * static_cast<float>(items); }
+  void add(const Box& box, std::uint32_t count) {
+    low = min(low, box.low);
+    high = max(high, box.high);
+    items += count;
+  }
+  void add(const Bin& other) { add({other.low, other.high}, other.items); }
+};
+
+using AxisBins = std::array<Bin, kMostBins>;
+
+std::array<AxisBins, 3> fill_bins(std::span<const BvhItem> items, const Binning& binning, std::size_t stride) {
+  std::array<AxisBins, 3> axes;
+  for (AxisBins& bins : axes) std::fill_n(bins.begin(), binning.bins, Bin::empty());
+  for (std::size_t i = 0; i < items.size(); i += stride) {
+    const Int4 at = binning.of(centre(items[i]));
+    const Box box = box_of(items[i]);
+    for (std::size_t axis = 0; axis < 3; ++axis) axes[axis][static_cast<std::size_t>(at[axis])].add(box, 1);
+  }
+  return axes;
+}
+
+struct Cut {
+  int axis = -1;           // none
+  int bin = 0;             // the first of the second child
+  float cost = kInfinity;  // area times items, of both children
+};
+
+void find_cut(const AxisBins& bins, std::size_t count, int axis, Cut& best) {
+  std::array<float, kMostBins> right_costs;
+  Bin right = Bin::empty();
+  for (std::size_t i = count - 1; i > 0; --i) {
+    right.add(bins[i]);
+    right_costs[i] = right.items == 0 ? kInfinity : right.cost();
+  }
+  Bin left = Bin::empty();
+  for (std::size_t i = 1; i < count; ++i) {
+    left.add(bins[i - 1]);
+    if (left.items == 0) continue;
+    const float cost = left.cost() + right_costs[i];
+    if (cost < best.cost) best = {axis, static_cast<int>(i), cost};  // false for NaN
+  }
+}
+
+Cut find_cut(std::span<const BvhItem> items, const Binning& binning, std::size_t stride) {
+  Cut best;
+  if (!binning.can_cut(0) && !binning.can_cut(1) && !binning.can_cut(2)) return best;
+  const std::array<AxisBins, 3> axes = fill_bins(items, binning, stride);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (binning.can_cut(axis)) find_cut(axes[static_cast<std::size_t>(axis)], binning.bins, axis, best);
+  }
+  return best;
+}
+
+/// How many items, brought to the front, are on the first side of a cut; what their centres span, and the others'.
+std::size_t partition(std::span<BvhItem> items, const Binning& binning, const Cut& cut, Box& left, Box& right) {
+  std::size_t begin = 0, end = items.size();
+  while (begin < end) {
+    const Float4 at = centre(items[begin]);
+    if (binning.of(at)[cut.axis] < cut.bin) {
+      left.add(at, at);
+      ++begin;
+    } else {
+      right.add(at, at);
+      std::swap(items[begin], items[--end]);
+    }
+  }
+  return begin;
+}
+
+Box centres_of(std::span<const BvhItem> items) {
+  // Least and greatest values: the same in any order.
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, items.size(), kParallelItems), Box(),
+      [&](const auto& range, Box box) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) box.add(centre(items[i]), centre(items[i]));
+        return box;
+      },
+      [](Box a, const Box& b) {
+        a.add(b);
+        return a;
+      });
+}
+
+/// How many items, brought to the front, the first child gets; 0 for a leaf of more items than add_few() takes.
+std::size_t cut(std::span<BvhItem> items, const Box& centres, int depth, Box& left, Box& right) {
+  const Binning binning(centres, items.size());
+  Cut best;
+  if (depth < kSahDepth) {
+    best = find_cut(items, binning, std::max<std::size_t>(1, items.size() / kSamples));
+    if (best.axis < 0 && items.size() >= 2 * kSamples) best = find_cut(items, binning, 1);
+  }
+  if (best.axis >= 0) return partition(items, binning, best, left, right);
+  // No plane parts the centres, or areas are beyond a float.
+  if (items.size() <= kMostLeafItems) return 0;
+  left = right = centres;
+  return items.size() / 2;
+}
+
+/// The best of all ways to give up to four items to two children, or to one leaf.
+void add_few(std::span<BvhItem> items, BvhShape& shape) {
+  const unsigned all = (1u << items.size()) - 1;
+  std::array<Bin, 1u << kMostTried> sets;  // by the bits of their items
+  sets[0] = Bin::empty();
+  for (unsigned set = 1; set <= all; ++set) {
+    sets[set] = sets[set & (set - 1)];
+    sets[set].add(box_of(items[static_cast<std::size_t>(std::countr_zero(set))]), 1);
+  }
+  const float area = Box{sets[all].low, sets[all].high}.half_area();
+  float best_cost = sets[all].cost();
+  unsigned best = 0;  // the first child's items; the second child has the last item
+  for (unsigned set = 1; set <= all / 2; ++set) {
+    const float cost = kTraversalCost * area + sets[set].cost() + sets[all - set].cost();
+    if (cost < best_cost) {
+      best_cost = cost;
+      best = set;
+    }
+  }
+  shape.push_back(static_cast<std::uint8_t>(best == 0 ? items.size() : 0));
+  if (best == 0) return;
+  std::array<BvhItem, kMostTried> sorted;
+  std::size_t left = 0, right = static_cast<std::size_t>(std::popcount(best));
+  for (std::size_t i = 0; i < items.size(); ++i) sorted[best >> i & 1 ? left++ : right++] = items[i];
+  std::copy_n(sorted.begin(), items.size(), items.begin());
+  add_few(items.first(left), shape);
+  add_few(items.subspan(left), shape);
+}
+
+void add(std::span<BvhItem> items, const Box& centres, int depth, BvhShape& shape) {
+  if (items.size() <= kMostTried) return add_few(items, shape);
+  Box left_centres, right_centres;
+  const std::size_t left = cut(items, centres, depth, left_centres, right_centres);
+  shape.push_back(static_cast<std::uint8_t>(left == 0 ? items.size() : 0));
+  if (left == 0) return;
+  if (items.size() < kParallelItems) {
+    add(items.first(left), left_centres, depth + 1, shape);
+    add(items.subspan(left), right_centres, depth + 1, shape);
+    return;
+  }
+  BvhShape right_shape;
+  tbb::task_group group;
+  group.run([&] { add(items.subspan(left), right_centres, depth + 1, right_shape); });
+  add(items.first(left), left_centres, depth + 1, shape);
+  group.wait();
+  shape.insert(shape.end(), right_shape.begin(), right_shape.end());
+}
+
+/// Writes the nodes of one tree: in blocks at once, backwards in each, so that children come before their parents.
+struct Filler {
+  std::span<const BvhItem> items;
+  const BvhShape& shape;
+  BvhPlace place;
+  std::span<pack::BvhNode> nodes;
+  std::span<pack::NodeArea> areas;
+
+  /// `item`: the leaf's first, counted in the tree.
+  void fill_leaf(std::uint32_t number, std::uint32_t item, std::uint32_t count) const {
+    pack::BvhNode node = {items[item].low, number + 1, items[item].high, (place.first_item + item) * 16 + count};
+    float area_m2 = items[item].area_m2;
+    for (const BvhItem& other : items.subspan(item + 1, count - 1)) {
+      node.bounds_min = glm::min(node.bounds_min, other.low);
+      node.bounds_max = glm::max(node.bounds_max, other.high);
+      area_m2 = add_areas(area_m2, other.area_m2);
+    }
+    nodes[number] = node;
+    if (!areas.empty()) areas[number].area_m2 = area_m2;
+  }
+
+  /// False, and nothing done, where a child is not below `end` or not there yet: every node's skip is above 0.
+  bool fill_inner(std::uint32_t number, std::uint32_t end) const {
+    if (number + 1 >= end) return false;
+    const pack::BvhNode& left = nodes[number + 1];
+    if (left.skip == 0 || left.skip >= end) return false;
+    const pack::BvhNode& right = nodes[left.skip];
+    if (right.skip == 0) return false;
+    nodes[number] = {glm::min(left.bounds_min, right.bounds_min), right.skip,
+                     glm::max(left.bounds_max, right.bounds_max), pack::none};
+    if (!areas.empty()) areas[number].area_m2 = add_areas(areas[number + 1].area_m2, areas[left.skip].area_m2);
+    return true;
+  }
+
+  /// Nodes first to end of the tree, whose items end with `item`; returns those whose children are not all among them.
+  std::vector<std::uint32_t> fill_block(std::size_t first, std::size_t end, std::uint32_t item) const {
+    std::vector<std::uint32_t> left_open;
+    const auto number_of = [&](std::size_t i) { return place.first_node + static_cast<std::uint32_t>(i); };
+    for (std::size_t i = end; i-- > first;) {
+      if (shape[i] != 0) {
+        item -= shape[i];
+        fill_leaf(number_of(i), item, shape[i]);
+      } else if (!fill_inner(number_of(i), number_of(end))) {
+        left_open.push_back(number_of(i));
+      }
+    }
+    return left_open;
+  }
+
+  /// Sums beyond a float end at the greatest.
+  static float add_areas(float a, float b) { return std::min(a + b, std::numeric_limits<float>::max()); }
+};
+
+double half_area(const pack::BvhNode& node) {
+  const glm::dvec3 size = glm::dvec3(node.bounds_max) - glm::dvec3(node.bounds_min);
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+}  // namespace
+
+BvhShape shape_bvh(std::span<BvhItem> items) {
+  BvhShape shape;
+  if (!items.empty()) add(items, centres_of(items), 0, shape);
+  return shape;
+}
+
+void fill_bvh(std::span<const BvhItem> items, const BvhShape& shape, const BvhPlace& place,
+              std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas) {
+  const Filler filler{items, shape, place, nodes, areas};
+  const std::size_t blocks = (shape.size() + kBlockNodes - 1) / kBlockNodes;
+  const auto block_end = [&](std::size_t block) { return std::min((block + 1) * kBlockNodes, shape.size()); };
+  std::vector<std::uint32_t> last_items(blocks);
+  std::uint32_t item = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    for (std::size_t i = b * kBlockNodes; i < block_end(b); ++i) item += shape[i];
+    last_items[b] = item;
+  }
+  std::vector<std::vector<std::uint32_t>> left_open(blocks);
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+    left_open[b] = filler.fill_block(b * kBlockNodes, block_end(b), last_items[b]);
+  });
+  for (std::size_t b = blocks; b-- > 0;) {
+    for (const std::uint32_t number : left_open[b]) filler.fill_inner(number, pack::none);
+  }
+}
+
+BvhStats bvh_stats(std::span<const pack::BvhNode> nodes, std::uint32_t first_node) {
+  BvhStats stats;
+  stats.nodes = nodes.size();
+  double cost = 0;
+  std::vector<std::uint32_t> ends;  // of the subtrees that a node is in
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    while (!ends.empty() && ends.back() <= first_node + i) ends.pop_back();
+    ends.push_back(nodes[i].skip);
+    stats.depth = std::max<std::uint64_t>(stats.depth, ends.size());
+    const bool is_leaf = nodes[i].leaf != pack::none;
+    stats.leaves += is_leaf;
+    cost += half_area(nodes[i]) * (is_leaf ? 1 + nodes[i].leaf % 16 : 1);
+  }
+  if (!nodes.empty() && half_area(nodes[0]) > 0) stats.sah_cost = cost / half_area(nodes[0]);
+  return stats;
+}
+
+void count_stats(const BvhStats& stats, PassReport& pass) {
+  pass.count("nodes", static_cast<double>(stats.nodes));
+  pass.count("leaves", static_cast<double>(stats.leaves));
+  pass.count("depth", static_cast<double>(stats.depth));
+  pass.count("sah_cost", stats.sah_cost);
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Binary bounding volume hierarchies by the surface area heuristic (SAH): what batches, instances and triangles share.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "../report.h"
+#include "pack_schema.h"
+
+namespace chandelier::baker {
+
+/// What a hierarchy is built over: a box, whose it is, and a triangle's area. Without a constructor, so that arrays of
+/// many are first touched by the threads that fill them.
+struct BvhItem {
+  glm::vec3 low;
+  std::uint32_t number;
+  glm::vec3 high;
+  float area_m2;
+};
+static_assert(sizeof(BvhItem) == 32);
+
+/// A tree's shape, depth first, a byte a node: the items of a leaf, 0 for an inner node.
+using BvhShape = std::vector<std::uint8_t>;
+
+/// Most items of all trees in a section: BvhNode::leaf has 28 bits for an item's number.
+constexpr std::uint64_t kMostBvhItems = (1u << 28) - 1;
+
+/// Sorts `items` into the order of the leaves and returns the shape of the tree over them; nothing for no items. Uses
+/// all threads where there are many items; the result does not depend on them.
+BvhShape shape_bvh(std::span<BvhItem> items);
+
+/// Where a tree stands in its sections.
+struct BvhPlace {
+  std::uint32_t first_node = 0;
+  std::uint32_t first_item = 0;
+};
+
+/// Writes the nodes of a shape over items in its order. `nodes` and `areas` are the whole sections, with zeros where
+/// the tree goes; `areas` may be empty.
+void fill_bvh(std::span<const BvhItem> items, const BvhShape& shape, const BvhPlace& place,
+              std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas);
+
+/// A tree's counts. Its SAH cost: the areas of the nodes plus, of the leaves, areas times items, over the root's area;
+/// 0 where the root has none. It is how many boxes and items a random line through the root's box tests on average.
+struct BvhStats {
+  std::uint64_t nodes = 0;
+  std::uint64_t leaves = 0;
+  std::uint64_t depth = 0;  // 1 for a leaf alone
+  double sah_cost = 0;
+};
+
+/// Of one tree, whose root is `first_node` in its section.
+BvhStats bvh_stats(std::span<const pack::BvhNode> nodes, std::uint32_t first_node = 0);
+
+void count_stats(const BvhStats& stats, PassReport& pass);
+
+}  // namespace chandelier::baker

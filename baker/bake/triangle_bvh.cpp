@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hierarchy over each mesh's triangles. Shapes of all trees first; when their sizes are known, the nodes are written
+// where they belong.
+#include "triangle_bvh.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <glm/glm.hpp>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "../error.h"
+#include "bvh.h"
+
+namespace chandelier::baker {
+namespace {
+
+constexpr std::size_t kTaskBatches = 64;
+
+struct Tree {
+  BvhPlace place;
+  std::span<BvhItem> items;
+  BvhShape shape;
+};
+
+std::uint32_t triangle_count(const pack::Batch& batch) {
+  return batch.index_count / 3;
+}
+
+std::uint64_t triangle_count(const pack::Contents& pack, const pack::Mesh& mesh) {
+  std::uint64_t count = 0;
+  for (std::uint32_t b = 0; b < mesh.batch_count; ++b) count += triangle_count(pack.batches[mesh.first_batch + b]);
+  return count;
+}
+
+BvhItem item_of(const pack::Contents& pack, std::uint32_t triangle) {
+  const auto corner = [&](std::size_t c) -> const glm::vec3& {
+    return pack.positions[pack.indices[std::size_t{triangle} * 3 + c].vertex].position_ls;
+  };
+  const glm::vec3 &a = corner(0), &b = corner(1), &c = corner(2);
+  const double area_m2 = 0.5 * glm::length(glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)));
+  return {glm::min(glm::min(a, b), c), triangle, glm::max(glm::max(a, b), c),
+          static_cast<float>(std::min<double>(area_m2, std::numeric_limits<float>::max()))};
+}
+
+void fill_items(const pack::Contents& pack, const pack::Mesh& mesh, std::span<BvhItem> items) {
+  const std::span batches = std::span(pack.batches).subspan(mesh.first_batch, mesh.batch_count);
+  std::vector<std::uint32_t> first_items;
+  std::uint32_t next = 0;
+  for (const pack::Batch& batch : batches) {
+    first_items.push_back(next);
+    next += triangle_count(batch);
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, batches.size(), kTaskBatches), [&](const auto& range) {
+    for (std::size_t b = range.begin(); b < range.end(); ++b) {
+      for (std::uint32_t t = 0; t < triangle_count(batches[b]); ++t) {
+        items[first_items[b] + t] = item_of(pack, batches[b].first_index / 3 + t);
+      }
+    }
+  });
+}
+
+/// Where each mesh's items go; returns their count.
+std::uint32_t place_items(const pack::Contents& pack, std::vector<Tree>& trees) {
+  std::uint64_t items = 0;
+  for (std::size_t m = 0; m < trees.size(); ++m) {
+    trees[m].place.first_item = static_cast<std::uint32_t>(items);
+    items += triangle_count(pack, pack.meshes[m]);
+    if (items > kMostBvhItems) {
+      fail("scene", "has more triangles than triangle BVHs can hold (above " + std::to_string(kMostBvhItems) + ")");
+    }
+  }
+  return static_cast<std::uint32_t>(items);
+}
+
+/// Where each mesh's nodes go; returns their count, which fits: a tree has less than two nodes an item.
+std::uint32_t place_nodes(std::vector<Tree>& trees, std::vector<pack::Mesh>& meshes) {
+  std::uint32_t nodes = 0;
+  for (std::size_t m = 0; m < trees.size(); ++m) {
+    trees[m].place.first_node = meshes[m].first_node = nodes;
+    meshes[m].node_count = static_cast<std::uint32_t>(trees[m].shape.size());
+    nodes += meshes[m].node_count;
+  }
+  return nodes;
+}
+
+/// The sections with zeros; clearing memory takes long enough to be shared.
+void make_room(std::uint32_t nodes, std::uint32_t items, pack::Contents& pack) {
+  tbb::parallel_invoke([&] { pack.triangle_bvh.assign(nodes, {}); },
+                       [&] {
+                         pack.triangle_bvh_items.assign(items, {});
+                         pack.triangle_bvh_areas.assign(nodes, {});
+                       });
+}
+
+void fill_tree(const Tree& tree, pack::Contents& pack) {
+  fill_bvh(tree.items, tree.shape, tree.place, pack.triangle_bvh, pack.triangle_bvh_areas);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.items.size(), 16384), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      pack.triangle_bvh_items[tree.place.first_item + i].triangle = tree.items[i].number;
+    }
+  });
+}
+
+/// Over all meshes; the SAH cost is the mean over triangles.
+void note(const pack::Contents& pack, const std::vector<Tree>& trees, PassReport& pass) {
+  std::vector<BvhStats> each(trees.size());
+  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t m) {
+    const pack::Mesh& mesh = pack.meshes[m];
+    each[m] = bvh_stats(std::span(pack.triangle_bvh).subspan(mesh.first_node, mesh.node_count), mesh.first_node);
+  });
+  BvhStats all;
+  for (std::size_t m = 0; m < trees.size(); ++m) {
+    all.nodes += each[m].nodes;
+    all.leaves += each[m].leaves;
+    all.depth = std::max(all.depth, each[m].depth);
+    all.sah_cost += each[m].sah_cost * static_cast<double>(trees[m].items.size());
+  }
+  if (!pack.triangle_bvh_items.empty()) all.sah_cost /= static_cast<double>(pack.triangle_bvh_items.size());
+  pass.bytes = std::span(pack.triangle_bvh).size_bytes() + std::span(pack.triangle_bvh_items).size_bytes() +
+               std::span(pack.triangle_bvh_areas).size_bytes();
+  pass.count("items", static_cast<double>(pack.triangle_bvh_items.size()));
+  count_stats(all, pass);
+}
+
+}  // namespace
+
+void make_triangle_bvh(PassReport& pass, pack::Contents& pack) {
+  std::vector<Tree> trees(pack.meshes.size());
+  const std::uint32_t item_count = place_items(pack, trees);
+  const auto items = std::make_unique_for_overwrite<BvhItem[]>(item_count);
+  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t m) {
+    Tree& tree = trees[m];
+    tree.items = {items.get() + tree.place.first_item, triangle_count(pack, pack.meshes[m])};
+    fill_items(pack, pack.meshes[m], tree.items);
+    tree.shape = shape_bvh(tree.items);
+  });
+  make_room(place_nodes(trees, pack.meshes), item_count, pack);
+  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t m) { fill_tree(trees[m], pack); });
+  note(pack, trees, pass);
+}
+
+}  // namespace chandelier::baker
