@@ -89,6 +89,12 @@ void Warnings::add(const std::string& file, const std::string& where, const std:
   ++entry.count;
 }
 
+std::uint64_t Warnings::count() const {
+  std::uint64_t count = 0;
+  for (const Entry& entry : entries_) count += entry.count;
+  return count;
+}
+
 std::vector<std::string> Warnings::lines() const {
   std::vector<std::string> out;
   for (const Entry& entry : entries_) {

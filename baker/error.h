@@ -37,6 +37,9 @@ class Warnings {
   /// `name`: one of those that the warning is about, where it is not one of `where`.
   void add(const std::string& file, const std::string& where, const std::string& what, const std::string& name = "");
 
+  /// However often the same was said.
+  std::uint64_t count() const;
+
   /// `file: where (and 3 more): what`, or with names `file: where: what (A, B, C and 3 more)`, in the order of adding.
   std::vector<std::string> lines() const;
 

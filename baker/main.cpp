@@ -94,7 +94,7 @@ void check_outputs(const baker::Options& options) {
 }
 
 pack::Contents make_pack(const baker::Options& options, const baker::Progress& progress, baker::Warnings& warnings,
-                         Outcome& outcome) {
+                         baker::Cache& cache, Outcome& outcome) {
   baker::Scene scene;
   outcome.report.run("import", [&](baker::PassReport&) {
     for (const std::filesystem::path& input : options.inputs) {
@@ -105,7 +105,7 @@ pack::Contents make_pack(const baker::Options& options, const baker::Progress& p
   outcome.files_read = scene.files_read;
   for (const auto& output : outputs_of(options)) refuse_overwriting_an_input(outcome.files_read, output);
   return with_memory_for(
-      "scene", [&] { return baker::bake(std::move(scene), options.bake, progress, outcome.report, warnings); });
+      "scene", [&] { return baker::bake(std::move(scene), options.bake, progress, outcome.report, warnings, &cache); });
 }
 
 /// The depfile comes first: with the new pack and the old depfile, a file that is newly read could change unnoticed.
@@ -147,8 +147,11 @@ void run(const baker::Options& options) {
   Outcome outcome;
   outcome.report.progress = &progress;
   baker::Warnings warnings;
-  const pack::Contents pack = make_pack(options, progress, warnings, outcome);
+  baker::Cache cache = options.cache.empty() ? baker::Cache() : baker::Cache(options.cache);
+  const pack::Contents pack = make_pack(options, progress, warnings, cache, outcome);
   write_pack(options, pack, outcome);
+  cache.warn(warnings);
+  outcome.cache_loads = cache.loads();
   outcome.warnings = warnings.lines();
   outcome.seconds = progress.seconds();
   progress.clear();

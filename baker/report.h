@@ -18,6 +18,7 @@ struct PassReport {
   double ms = 0;            // wall time
   std::uint64_t bytes = 0;  // that it put into the pack
   std::vector<std::pair<std::string, double>> counts;
+  bool cached = false;  // it did not run: its result came from the cache
 
   void count(const std::string& what, double value) { counts.emplace_back(what, value); }
 };

@@ -33,7 +33,23 @@ Json number_json(double value) {
 Json pass_json(const PassReport& pass) {
   Json counts = Json::object();
   for (const auto& [what, value] : pass.counts) counts[what] = number_json(value);
-  return {{"name", pass.name}, {"ms", pass.ms}, {"bytes", pass.bytes}, {"counts", counts}};
+  Json out = {{"name", pass.name}, {"ms", pass.ms}, {"bytes", pass.bytes}, {"counts", counts}};
+  if (pass.cached) out["cached"] = true;
+  return out;
+}
+
+Json cache_json(const Options& options, const Outcome& outcome) {
+  if (options.cache.empty()) return nullptr;
+  Json stages = Json::array();
+  std::size_t hits = 0;
+  for (const auto& [entry, hit] : outcome.cache_loads) {
+    stages.push_back({{"entry", entry}, {"hit", hit}});
+    hits += hit;
+  }
+  return {{"folder", options.cache.string()},
+          {"hits", hits},
+          {"misses", outcome.cache_loads.size() - hits},
+          {"stages", stages}};
 }
 
 }  // namespace
@@ -60,6 +76,7 @@ std::string report_json(const Options& options, const Outcome& outcome) {
       {"images", outcome.images},
       {"lights", outcome.lights},
       {"passes", passes},
+      {"cache", cache_json(options, outcome)},
       {"warnings", outcome.warnings},
   };
   // Names that are not UTF-8 are shown with replacement characters: a report is for reading, not for opening files.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 
 #include "options.h"
@@ -15,8 +16,9 @@ struct Outcome {
   Report report;
   std::vector<std::string> warnings;
   std::vector<std::filesystem::path> files_read;
-  std::uint64_t triangles = 0;            // stored
-  std::uint64_t instanced_triangles = 0;  // as drawn
+  std::map<std::string, bool> cache_loads;  // each entry, and whether it was there
+  std::uint64_t triangles = 0;              // stored
+  std::uint64_t instanced_triangles = 0;    // as drawn
   std::uint64_t batches = 0;
   std::uint64_t images = 0;
   std::uint64_t lights = 0;

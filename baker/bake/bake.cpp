@@ -2,18 +2,19 @@
 // The passes in their order.
 #include "bake.h"
 
-#include <glm/trigonometric.hpp>
 #include <span>
 
 #include "../error.h"
 #include "batch_bvh.h"
-#include "batches.h"
+#include "geometry_cache.h"
 #include "images.h"
 #include "instances.h"
+#include "light_audit.h"
 #include "light_bvh.h"
 #include "lights.h"
-#include "normals.h"
+#include "mesh_passes.h"
 #include "pack_checks.h"
+#include "stage_keys.h"
 #include "strings.h"
 #include "textures.h"
 #include "triangle_bvh.h"
@@ -46,15 +47,7 @@ std::uint64_t bytes_of(const std::vector<Records>&... sections) {
 /// there already.
 void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
                    [[maybe_unused]] Warnings& warnings, Strings& strings, pack::Contents& pack) {
-  std::vector<MeshRecords> meshes;
-  report.run("normals", [&](PassReport& pass) {
-    pass.count("primitives", static_cast<double>(make_normals(scene, glm::radians(settings.smooth_angle_deg))));
-  });
-  report.run("batches", [&](PassReport& pass) {
-    meshes = make_batches(scene, settings.batch_triangles, progress, pack);
-    pass.bytes = bytes_of(pack.positions, pack.vertex_attributes, pack.indices, pack.batches, pack.meshes);
-    pass.count("batches", static_cast<double>(pack.batches.size()));
-  });
+  const std::vector<MeshRecords> meshes = bake_meshes(scene, settings, report, pack);
   report.run("instances", [&](PassReport& pass) {
     make_instances(scene, meshes, strings, pack);
     pass.bytes = bytes_of(pack.instances, pack.batch_instances);
@@ -65,7 +58,24 @@ void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& p
   report.run("voxels", [&](PassReport& pass) { make_voxels(settings.voxels, progress, pack, pass); });
 }
 
-void bake_lights(const Scene& scene, const BakeSettings& settings, Report& report, [[maybe_unused]] Warnings& warnings,
+/// From the cache where it has it, else baked and kept.
+void find_or_bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
+                           Warnings& warnings, Cache& cache, Strings& strings, pack::Contents& pack) {
+  if (!cache.is_on()) return bake_geometry(scene, settings, progress, report, warnings, strings, pack);
+  std::string entry;
+  bool found = false;
+  report.run("find_geometry", [&](PassReport&) {
+    entry = geometry_entry(scene, settings);
+    found = load_geometry(cache, entry, report, strings, pack);
+  });
+  if (found) return;
+  const std::size_t first_pass = report.passes.size(), earlier_warnings = warnings.count();
+  bake_geometry(scene, settings, progress, report, warnings, strings, pack);
+  if (warnings.count() > earlier_warnings) return;  // not kept, so that they are said every time
+  report.run("keep_geometry", [&](PassReport&) { store_geometry(cache, entry, report, first_pass, pack); });
+}
+
+void bake_lights(const Scene& scene, const BakeSettings& settings, Report& report, Warnings& warnings,
                  Strings& strings, pack::Contents& pack) {
   report.run("lights", [&](PassReport& pass) {
     make_lights(scene, settings.range_threshold_lx, strings, pack);
@@ -77,22 +87,25 @@ void bake_lights(const Scene& scene, const BakeSettings& settings, Report& repor
     pass.bytes = bytes_of(pack.light_bvh);
     pass.count("nodes", static_cast<double>(pack.light_bvh.size()));
   });
+  report.run("light_audit", [&](PassReport& pass) { audit_lights(scene, pack, pass, warnings); });
 }
 
 }  // namespace
 
 pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
-                    Warnings& warnings) {
+                    Warnings& warnings, Cache* cache) {
+  Cache no_cache;
+  Cache& kept = cache ? *cache : no_cache;
   pack::Contents pack;
   Strings strings(pack.strings);
   std::vector<ImageRequest> requests;
   report.run("materials", [&](PassReport& pass) {
-    requests = make_materials(scene, strings, pack);
+    requests = make_materials(scene, settings.images.textures != TextureMode::none, strings, pack);
     pass.bytes = bytes_of(pack.materials, pack.textures);
   });
-  bake_geometry(scene, settings, progress, report, warnings, strings, pack);
+  find_or_bake_geometry(scene, settings, progress, report, warnings, kept, strings, pack);
   report.run("images", [&](PassReport& pass) {
-    make_images(scene, requests, progress, strings, pack);
+    make_images(scene, requests, settings.images, progress, pass, strings, pack);
     pass.bytes = bytes_of(pack.images, pack.image_data);
   });
   bake_lights(scene, settings, report, warnings, strings, pack);

@@ -2,10 +2,12 @@
 // The bake: scene in, pack out.
 #pragma once
 
+#include "../cache.h"
 #include "../error.h"
 #include "../progress.h"
 #include "../report.h"
 #include "../scene.h"
+#include "images.h"
 #include "pack_schema.h"
 #include "voxel_bins.h"
 
@@ -18,12 +20,13 @@ struct BakeSettings {
   int normal_bits = 10;                 // of each of a normal's and a tangent's two numbers, 8 to 16
   int uv_bits = 14;                     // of a texture coordinate after the point, up to 20; 0 keeps floats
   VoxelSettings voxels;
+  ImageSettings images;
   float smooth_angle_deg = 0;           // missing normals: neighbours within this are smoothed; 0: all flat
 };
 
-/// Runs all passes, and notes each in `report`. Same scene and settings, same contents, whatever the number of threads.
+/// Runs all passes, and notes each in `report`; takes from `cache`, where there is one, what it keeps. Same scene and settings, same contents, whatever the number of threads.
 /// Throws Error.
 pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
-                    Warnings& warnings);
+                    Warnings& warnings, Cache* cache = nullptr);
 
 }  // namespace chandelier::baker
