@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks for the mistakes that exporters and units make. A false alarm is worse than a miss: each rule wants to be sure.
+#include "light_audit.h"
+
+#include <fmt/core.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "frame_schema.h"
+#include "light_rays.h"
+
+namespace chandelier::baker {
+namespace {
+
+using Numbers = std::vector<std::size_t>;  // of lights
+
+constexpr double kSphere_sr = 4 * 3.14159265358979323846;
+constexpr double kLumensPerWatt = 683;  // what glTF exporters take
+constexpr int kRays = 32;               // from a light that something makes suspicious
+constexpr double kSunlight_lx = 1e5;    // direct, at noon
+constexpr double kFixture_m = 0.3;      // no room is this small: what is nearer around a light is its lamp
+
+struct Audit {
+  const Scene& scene;
+  const pack::Contents& pack;
+  PassReport& pass;
+  Warnings& warnings;
+
+  /// The same number in both, as make_lights puts one after the other.
+  const pack::Light& baked(std::size_t light) const { return pack.lights[light]; }
+  const Light& authored(std::size_t light) const { return scene.lights[light]; }
+
+  void name(const char* count, const std::string& what, const Numbers& lights) {
+    if (lights.empty()) return;
+    pass.count(count, static_cast<double>(lights.size()));
+    for (const std::size_t i : lights) {
+      warnings.add("scene", "lights", what, authored(i).name.empty() ? authored(i).where : authored(i).name);
+    }
+  }
+};
+
+bool is_near(double value, double expected, double tolerance) {
+  return std::abs(value - expected) <= tolerance * expected;
+}
+
+double brightest_cd(const pack::Light& light) {
+  return double{light.intensity} * std::max({light.color.r, light.color.g, light.color.b});
+}
+
+// ---- Defaults -------------------------------------------------------------------------------------------------------
+
+/// What the intensity is the default of, where it is one. Blender's lights start at 10 W, in its first scene at 1000 W;
+/// 100 W are as common. Its exporter writes 683 W / 4π (standard), W / 4π (unitless) or W (raw) as candela.
+std::string default_of(double intensity) {
+  if (intensity == 1) return "glTF's default";
+  for (const int watts : {10, 100, 1000}) {
+    for (const double factor : {kLumensPerWatt / kSphere_sr, 1 / kSphere_sr, 1.0}) {
+      if (is_near(intensity, watts * factor, 1e-4)) return fmt::format("what Blender writes for {} W", watts);
+    }
+  }
+  return {};
+}
+
+/// Lights that nobody touched: all have the same default strength, are white, and none has a range. A scene with one
+/// light says nothing.
+void audit_defaults(Audit& audit, const Numbers& placed) {
+  if (placed.size() < 2) return;
+  const float intensity = audit.baked(placed[0]).intensity;
+  const bool untouched = std::ranges::all_of(placed, [&](std::size_t i) {
+    const pack::Light& light = audit.baked(i);
+    return light.intensity == intensity && light.color == glm::vec3(1) &&
+           light.range_source == pack::RangeSource::derived;
+  });
+  const std::string whose = default_of(intensity);
+  if (!untouched || whose.empty()) return;
+  audit.name("all_default",
+             fmt::format("all {} are white with {} cd, {}: was their strength ever set?", placed.size(),
+                         to_text(intensity), whose),
+             placed);
+}
+
+// ---- Units ----------------------------------------------------------------------------------------------------------
+
+/// Mistakes with units, by the lumens that they make of a watt. 683 is right; lamps have fewer, and what is none of
+/// these numbers is nobody's mistake but maybe a choice.
+struct Mixup {
+  double lumens_per_watt;
+  const char* count;
+  const char* what;
+};
+constexpr std::array<Mixup, 5> kMixups = {{
+    {kLumensPerWatt * kLumensPerWatt, "watts_twice", "683 times too bright: power_w was turned to lumens twice"},
+    {kLumensPerWatt * kSphere_sr, "lumens_as_candela",
+     "12.6 times too bright: they have lumens where glTF has candela"},
+    {kLumensPerWatt / kSphere_sr, "sphere_twice", "12.6 times too dark: power_w was divided by 4 pi twice"},
+    {kSphere_sr, "watts_as_candela", "54 times too dark: they have watts where glTF has candela"},
+    {1, "radiometric", "683 times too dark: they have watts per steradian where glTF has candela"},
+}};
+
+void audit_power(Audit& audit, const Numbers& placed) {
+  for (const Mixup& mixup : kMixups) {
+    Numbers lights;
+    for (const std::size_t i : placed) {
+      const double power_w = audit.authored(i).power_w.value_or(0);
+      if (power_w <= 0) continue;
+      const double lumens = kSphere_sr * audit.baked(i).intensity;
+      if (is_near(lumens / power_w, mixup.lumens_per_watt, 2e-3)) lights.push_back(i);
+    }
+    audit.name(mixup.count, mixup.what, lights);
+  }
+}
+
+/// What a light gives the surfaces around it, lux: at the median of the distances that rays find. None where most find
+/// nothing.
+std::optional<double> illuminance_lx(const pack::Contents& pack, const pack::Light& light) {
+  std::vector<double> distances;
+  for (const glm::dvec3& way : directions_of(light, kRays)) {
+    const double distance = cast_ray(pack, glm::dvec3(light.position_ws), way, frame::shadow_near_m).distance_m;
+    if (distance <= light.range_m) distances.push_back(distance);
+  }
+  if (distances.size() < kRays / 2) return std::nullopt;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return brightest_cd(light) / (*middle * *middle);
+}
+
+/// Nothing that is more than a lamp away from a light is brighter than in the sun.
+Numbers brighter_than_sunlight(const Audit& audit, const Numbers& placed) {
+  std::vector<std::uint8_t> found(placed.size(), 0);
+  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
+    const pack::Light& light = audit.baked(placed[i]);
+    if (brightest_cd(light) < kSunlight_lx * kFixture_m * kFixture_m) return;
+    const std::optional<double> lux = illuminance_lx(audit.pack, light);
+    // In a lamp of its own, a light may be as bright as this at its shade.
+    found[i] = lux && *lux > kSunlight_lx && brightest_cd(light) / *lux > kFixture_m * kFixture_m;
+  });
+  Numbers out;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (found[i]) out.push_back(placed[i]);
+  }
+  return out;
+}
+
+double median_cd(const Audit& audit, std::span<const std::size_t> sorted) {
+  return brightest_cd(audit.baked(sorted[sorted.size() / 2]));
+}
+
+/// The lights above a gap of more than 50 times in strength, if they are the lesser half and about 683 times as strong
+/// as the others: some of a scene's lights went another way through the units than the rest.
+Numbers strong_minority(const Audit& audit, const Numbers& placed) {
+  Numbers sorted = placed;
+  const auto strength = [&](std::size_t i) { return brightest_cd(audit.baked(i)); };
+  std::ranges::stable_sort(sorted, {}, strength);
+  std::size_t first = 0;
+  double widest = 50;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const double gap = strength(sorted[i]) / strength(sorted[i - 1]);
+    if (gap > widest) widest = gap, first = i;
+  }
+  if (first == 0 || sorted.size() - first >= first) return {};
+  const std::span all(sorted);
+  const double ratio = median_cd(audit, all.subspan(first)) / median_cd(audit, all.first(first));
+  if (ratio < kLumensPerWatt / 2 || ratio > kLumensPerWatt * 2) return {};
+  return {sorted.begin() + static_cast<std::ptrdiff_t>(first), sorted.end()};
+}
+
+/// Of the strong minority, those that also light what is around them 100 times as much as the others do: not
+/// floodlights, which are strong because they are far away.
+Numbers units_apart(const Audit& audit, const Numbers& placed) {
+  const Numbers strong = strong_minority(audit, placed);
+  if (strong.empty()) return {};
+  const auto is_strong = [&](std::size_t i) { return std::ranges::find(strong, i) != strong.end(); };
+  std::vector<double> usual_lx;
+  for (std::size_t k = 0; k < placed.size() && usual_lx.size() < 64; ++k) {
+    const std::optional<double> lux =
+        is_strong(placed[k]) ? std::nullopt : illuminance_lx(audit.pack, audit.baked(placed[k]));
+    if (lux) usual_lx.push_back(*lux);
+  }
+  if (usual_lx.empty()) return {};
+  std::ranges::sort(usual_lx);
+  Numbers out;
+  for (const std::size_t i : strong) {
+    const std::optional<double> lux = illuminance_lx(audit.pack, audit.baked(i));
+    if (lux && *lux > 100 * usual_lx[usual_lx.size() / 2]) out.push_back(i);
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+void audit_units(Audit& audit, const Numbers& placed) {
+  audit_power(audit, placed);
+  const Numbers apart = units_apart(audit, placed);
+  audit.name("units_apart", "about 683 times as bright as the other lights: were watts turned to lumens twice?", apart);
+  Numbers blinding = brighter_than_sunlight(audit, placed);
+  std::erase_if(blinding, [&](std::size_t i) { return std::ranges::find(apart, i) != apart.end(); });
+  audit.name("brighter_than_sunlight",
+             "brighter than direct sunlight on most of what is around them: were watts turned to lumens twice?",
+             blinding);
+}
+
+// ---- Places ---------------------------------------------------------------------------------------------------------
+
+/// Whether a closed shell around the light keeps it in: most rays start inside, and meet the shell's back before all
+/// else. Around a lamp in a room of a closed building they meet the room first. A back that is seen (a double-sided
+/// material) may be meant to be lit, unless it is as near as a bulb. What is nearer than shadow maps see casts none.
+bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
+  const glm::dvec3 from(light.position_ws);
+  const std::vector<glm::dvec3> ways = directions_of(light, kRays);
+  int inside = 0, kept = 0;
+  for (const glm::dvec3& way : ways) {
+    const RayHit hit = cast_ray(pack, from, way, frame::shadow_near_m);
+    if (hit.shells_around > 0) ++inside;
+    if (inside == 0 && &way == &ways[1]) return false;  // two rays agree that it stands free
+    if (hit.closed_back && hit.distance_m <= light.range_m && (!hit.double_sided || hit.distance_m < kFixture_m)) {
+      ++kept;
+    }
+  }
+  return inside > kRays / 2 && kept > kRays / 2;
+}
+
+void audit_places(Audit& audit, const Numbers& placed) {
+  if (audit.pack.batch_instances.empty()) return;  // a rig without its scene
+  const bool any_closed = std::ranges::any_of(audit.pack.batches, [](const pack::Batch& b) { return b.closed == 1; });
+  enum : std::uint8_t { fine, swallowed, alone };
+  std::vector<std::uint8_t> found(placed.size(), fine);
+  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
+    const pack::Light& light = audit.baked(placed[i]);
+    if (light.dynamic) return;  // it is there only now
+    if (!reaches_anything(audit.pack, light)) {
+      found[i] = alone;
+    } else if (any_closed && is_swallowed(audit.pack, light)) {
+      found[i] = swallowed;
+    }
+  });
+  Numbers inside, nothing;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (found[i] == swallowed) inside.push_back(placed[i]);
+    if (found[i] == alone) nothing.push_back(placed[i]);
+  }
+  audit.name("inside_closed", "inside closed geometry, whose shadow keeps their light in", inside);
+  audit.name("reaching_nothing", "reaching nothing: no triangle is within their range and cone", nothing);
+}
+
+}  // namespace
+
+void audit_lights(const Scene& scene, const pack::Contents& pack, PassReport& pass, Warnings& warnings) {
+  Audit audit = {scene, pack, pass, warnings};
+  Numbers placed;
+  for (std::size_t i = 0; i < pack.lights.size(); ++i) {
+    if (pack.lights[i].type != pack::LightType::directional) placed.push_back(i);
+  }
+  audit_defaults(audit, placed);
+  audit_units(audit, placed);
+  audit_places(audit, placed);
+}
+
+}  // namespace chandelier::baker

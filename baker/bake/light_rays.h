@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands around a light: rays against a pack's static triangles, and whether any lies in its reach.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "pack_schema.h"
+
+namespace chandelier::baker {
+
+/// What a ray meets. Masked materials do not count: what their texture leaves of them is not known here.
+struct RayHit {
+  double distance_m = INFINITY;  // of the first triangle
+  bool closed_back = false;      // it is the back of a closed shell
+  bool double_sided = false;     // its material shows its back
+  int shells_around = 0;         // closed shells left less those entered: how many hold the ray's start
+};
+
+/// `from` and `way` in the world, `way` of unit length. Nothing nearer than `least_m` counts as first.
+RayHit cast_ray(const pack::Contents& pack, const glm::dvec3& from, const glm::dvec3& way, double least_m);
+
+/// `count` directions, spread evenly over what a point or spot light shines into; always the same.
+std::vector<glm::dvec3> directions_of(const pack::Light& light, int count);
+
+/// Whether a triangle lies within a point or spot light's range and, maybe elsewhere, within its cone. So "no" is
+/// certain. Triangles that move count where they rest.
+bool reaches_anything(const pack::Contents& pack, const pack::Light& light);
+
+}  // namespace chandelier::baker
