@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "pack_checks_bvh.h"
 #include "pack_checks_lights.h"
 #include "pack_checks_voxels.h"
 
@@ -146,6 +147,7 @@ std::string check(const View& view) {
   if (std::string line = first_fault("images", view.images); !line.empty()) return line;
   if (std::string line = first_fault("lights", view.lights); !line.empty()) return line;
   if (std::string line = light_fault(view); !line.empty()) return line;
+  if (std::string line = bvh_fault(view); !line.empty()) return line;
   if (std::string line = voxel_fault(view); !line.empty()) return line;
   return first_fault("cameras", view.cameras);
 }

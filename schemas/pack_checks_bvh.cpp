@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules of the hierarchies over batches, instances and triangles that one field alone cannot break.
+//
+// That a section of nodes is a tree follows from what each node says about its children, by induction: a root's range
+// is known, and an inner node's range is itself and the ranges of its two children. So nothing here goes down a tree,
+// which could be as deep as a pack is long.
+#include "pack_checks_bvh.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace chandelier::pack {
+namespace {
+
+/// How far a node's area may be from the sum of its children's, as a part of it: writers add in different orders.
+constexpr double area_tolerance = 1e-4;
+
+std::string text(std::uint64_t value) {
+  return std::to_string(value);
+}
+
+std::string decimal(double value) {
+  char buffer[32];
+  return std::string(buffer, std::to_chars(buffer, buffer + sizeof(buffer), static_cast<float>(value)).ptr);
+}
+
+std::string place(const char* section, std::uint64_t number) {
+  return std::string(section) + "[" + text(number) + "]";
+}
+
+bool is_ordered(const glm::vec3& low, const glm::vec3& high) {
+  return low.x <= high.x && low.y <= high.y && low.z <= high.z;
+}
+
+bool holds(const BvhNode& outer, const glm::vec3& low, const glm::vec3& high) {
+  return is_ordered(outer.bounds_min, low) && is_ordered(high, outer.bounds_max);
+}
+
+bool holds(const BvhNode& outer, const BvhNode& inner) {
+  return holds(outer, inner.bounds_min, inner.bounds_max);
+}
+
+/// The nodes of one section, of which trees are parts.
+struct Trees {
+  const char* name;
+  const char* items_name;
+  std::span<const BvhNode> nodes;
+  std::uint64_t item_count;
+  std::uint64_t next_item = 0;  // after the leaves so far
+};
+
+std::string leaf_fault(Trees& trees, std::uint32_t number) {
+  const BvhNode& node = trees.nodes[number];
+  const std::uint64_t first = node.leaf / 16, count = node.leaf % 16;
+  if (node.skip != number + 1) return ".skip: " + text(node.skip) + " where a leaf's is " + text(number + 1u);
+  if (count == 0) return ".leaf: no items (" + text(node.leaf) + ")";
+  if (first != trees.next_item) {
+    return ".leaf: starts with item " + text(first) + " where the leaves before it end with " + text(trees.next_item);
+  }
+  trees.next_item += count;
+  if (trees.next_item <= trees.item_count) return {};
+  return ".leaf: " + text(first) + " plus " + text(count) + " items is past the " + text(trees.item_count) + " " +
+         trees.items_name;
+}
+
+/// Of an inner node of a tree that ends at `end`.
+std::string children_fault(const Trees& trees, std::uint32_t number, std::uint32_t end) {
+  const BvhNode& node = trees.nodes[number];
+  if (node.skip <= number + 1 || node.skip > end) {
+    return ".skip: " + text(node.skip) + " is not above its first child " + text(number + 1u) +
+           " and up to the tree's end " + text(end);
+  }
+  const BvhNode& first = trees.nodes[number + 1];
+  if (first.skip <= number + 1 || first.skip >= node.skip) {
+    return ": its first child's skip " + text(first.skip) + " leaves no second child before " + text(node.skip);
+  }
+  const BvhNode& second = trees.nodes[first.skip];
+  if (second.skip != node.skip) {
+    return ".skip: " + text(node.skip) + " where that of its second child " + text(first.skip) + " is " +
+           text(second.skip);
+  }
+  if (!holds(node, first)) return ": its box does not hold that of its first child " + text(number + 1u);
+  if (!holds(node, second)) return ": its box does not hold that of its second child " + text(first.skip);
+  return {};
+}
+
+/// Of the tree whose nodes are `first` to `end`, at least one. Its leaves' items are the next ones.
+std::string tree_fault(Trees& trees, std::uint32_t first, std::uint32_t end) {
+  if (trees.nodes[first].skip != end) {
+    return place(trees.name, first) + ".skip: " + text(trees.nodes[first].skip) + " where its tree ends at " +
+           text(end);
+  }
+  for (std::uint32_t i = first; i < end; ++i) {
+    const BvhNode& node = trees.nodes[i];
+    if (!is_ordered(node.bounds_min, node.bounds_max)) {
+      return place(trees.name, i) + ".bounds_min: above bounds_max";
+    }
+    if (std::string line = node.leaf == none ? children_fault(trees, i, end) : leaf_fault(trees, i); !line.empty()) {
+      return place(trees.name, i) + line;
+    }
+  }
+  return {};
+}
+
+/// Of a section that is one tree.
+std::string single_tree_fault(Trees trees) {
+  if (!trees.nodes.empty()) {
+    std::string line = tree_fault(trees, 0, static_cast<std::uint32_t>(trees.nodes.size()));
+    if (!line.empty()) return line;
+  }
+  if (trees.next_item == trees.item_count) return {};
+  return std::string(trees.items_name) + ": " + text(trees.item_count) + " records where leaves have " +
+         text(trees.next_item);
+}
+
+/// Each of what can be an item once: `is_wanted[n]` says whether n is one.
+template <typename Ref>
+std::string items_fault(const char* name, std::span<const Ref> items, std::uint32_t Ref::*number,
+                        const std::string& field, const char* wanted, std::vector<bool> is_wanted) {
+  const auto count = static_cast<std::uint64_t>(std::count(is_wanted.begin(), is_wanted.end(), true));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const std::uint32_t n = items[i].*number;
+    if (!is_wanted[n]) {
+      return place(name, i) + "." + field + ": " + text(n) + " is there already, or is not one of the " + wanted;
+    }
+    is_wanted[n] = false;
+  }
+  if (items.size() == count) return {};
+  return std::string(name) + ": " + text(items.size()) + " records for " + text(count) + " " + wanted;
+}
+
+std::string batch_boxes_fault(const View& view) {
+  for (std::size_t i = 0; i < view.batch_bvh.size(); ++i) {
+    const BvhNode& node = view.batch_bvh[i];
+    if (node.leaf == none) continue;
+    for (std::uint32_t item = node.leaf / 16; item < node.leaf / 16 + node.leaf % 16; ++item) {
+      const std::uint32_t number = view.batch_bvh_items[item].batch_instance;
+      const BatchInstance& draw = view.batch_instances[number];
+      if (!holds(node, draw.bounds_min_ws, draw.bounds_max_ws)) {
+        return place("batch_bvh", i) + ": its box does not hold that of batch instance " + text(number);
+      }
+    }
+  }
+  return {};
+}
+
+std::string batch_bvh_fault(const View& view) {
+  if (std::string line =
+          single_tree_fault({"batch_bvh", "batch_bvh_items", view.batch_bvh, view.batch_bvh_items.size()});
+      !line.empty()) {
+    return line;
+  }
+  if (view.batch_bvh.empty()) return {};
+  std::vector<bool> is_static(view.batch_instances.size());
+  for (std::size_t i = 0; i < is_static.size(); ++i) {
+    is_static[i] = view.instances[view.batch_instances[i].instance].dynamic == 0;
+  }
+  if (std::string line = items_fault("batch_bvh_items", view.batch_bvh_items, &BatchRef::batch_instance,
+                                     "batch_instance", "static batch instances", std::move(is_static));
+      !line.empty()) {
+    return line;
+  }
+  return batch_boxes_fault(view);
+}
+
+std::string instance_bvh_fault(const View& view) {
+  if (std::string line =
+          single_tree_fault({"instance_bvh", "instance_bvh_items", view.instance_bvh, view.instance_bvh_items.size()});
+      !line.empty()) {
+    return line;
+  }
+  if (view.instance_bvh.empty()) return {};
+  std::vector<bool> is_wanted(view.instances.size());
+  for (const BatchInstance& draw : view.batch_instances) {
+    is_wanted[draw.instance] = view.instances[draw.instance].dynamic == 0;
+  }
+  return items_fault("instance_bvh_items", view.instance_bvh_items, &InstanceRef::instance, "instance",
+                     "static instances with batches", std::move(is_wanted));
+}
+
+/// Of the items from `first` to `end`, which must be the triangles of the mesh's batches. `is_open` has no bit set
+/// before and after.
+std::string triangles_fault(const View& view, std::size_t m, std::uint64_t first, std::uint64_t end,
+                            std::vector<bool>& is_open) {
+  const Mesh& mesh = view.meshes[m];
+  std::uint64_t triangles = 0;
+  for (std::uint32_t b = mesh.first_batch; b < mesh.first_batch + mesh.batch_count; ++b) {
+    const Batch& batch = view.batches[b];
+    triangles += batch.index_count / 3;
+    if (triangles > end - first) break;  // before more work than the mesh's nodes pay for
+    const auto begin = is_open.begin() + batch.first_index / 3;
+    std::fill(begin, begin + batch.index_count / 3, true);
+  }
+  if (triangles != end - first) {
+    return place("meshes", m) + ": its triangle BVH has " + text(end - first) + " items, not one for each triangle";
+  }
+  for (std::uint64_t i = first; i < end; ++i) {
+    const std::uint32_t triangle = view.triangle_bvh_items[i].triangle;
+    if (triangle >= is_open.size() || !is_open[triangle]) {
+      return place("triangle_bvh_items", i) + ".triangle: " + text(triangle) +
+             " is there already, or is not in a batch of its mesh";
+    }
+    is_open[triangle] = false;
+  }
+  return {};
+}
+
+std::string areas_fault(const View& view) {
+  for (std::size_t i = 0; i < view.triangle_bvh.size(); ++i) {
+    if (view.triangle_bvh[i].leaf != none) continue;
+    const double area = view.triangle_bvh_areas[i].area_m2;
+    const double sum = double{view.triangle_bvh_areas[i + 1].area_m2} +
+                       double{view.triangle_bvh_areas[view.triangle_bvh[i + 1].skip].area_m2};
+    const double most = std::min(sum, double{std::numeric_limits<float>::max()});
+    if (std::abs(area - most) > area_tolerance * most) {
+      return place("triangle_bvh_areas", i) + ".area_m2: " + decimal(area) + " where its children have " +
+             decimal(most);
+    }
+  }
+  return {};
+}
+
+std::string triangle_bvh_fault(const View& view) {
+  Trees trees{"triangle_bvh", "triangle_bvh_items", view.triangle_bvh, view.triangle_bvh_items.size()};
+  std::uint32_t next_node = 0;
+  std::vector<bool> is_open(view.triangle_bvh.empty() ? 0 : view.indices.size() / 3);
+  for (std::size_t m = 0; m < view.meshes.size() && !view.triangle_bvh.empty(); ++m) {
+    const Mesh& mesh = view.meshes[m];
+    const std::uint64_t first_item = trees.next_item;
+    if (mesh.node_count > 0) {
+      if (mesh.first_node != next_node) {
+        return place("meshes", m) + ".first_node: " + text(mesh.first_node) + " where the trees before it end with " +
+               text(next_node);
+      }
+      next_node += mesh.node_count;
+      if (std::string line = tree_fault(trees, mesh.first_node, next_node); !line.empty()) return line;
+    }
+    if (std::string line = triangles_fault(view, m, first_item, trees.next_item, is_open); !line.empty()) return line;
+  }
+  if (next_node != view.triangle_bvh.size()) {
+    return "triangle_bvh: " + text(view.triangle_bvh.size()) + " records where meshes have " + text(next_node);
+  }
+  if (trees.next_item != trees.item_count) {
+    return "triangle_bvh_items: " + text(trees.item_count) + " records where leaves have " + text(trees.next_item);
+  }
+  return areas_fault(view);
+}
+
+}  // namespace
+
+std::string bvh_fault(const View& view) {
+  for (const std::span<const BvhNode> nodes : {view.batch_bvh, view.instance_bvh, view.triangle_bvh}) {
+    if (nodes.size() >= none) return "a BVH has more nodes than 32 bits count (" + text(nodes.size()) + ")";
+  }
+  if (std::string line = batch_bvh_fault(view); !line.empty()) return line;
+  if (std::string line = instance_bvh_fault(view); !line.empty()) return line;
+  return triangle_bvh_fault(view);
+}
+
+}  // namespace chandelier::pack
