@@ -1,130 +1,102 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches: welded, with tangents, cut by meshoptimizer, concatenated in the order of meshes and primitives.
+// Batches, concatenated in the order of meshes and primitives. Where each one goes is counted first, so that all are
+// written at once.
 #include "batches.h"
 
-#include <meshoptimizer.h>
 #include <tbb/parallel_for.h>
 
 #include "../error.h"
-#include "octahedral.h"
-#include "tangents.h"
-#include "weld.h"
+#include "batch_cone.h"
+#include "batch_cut.h"
 
 namespace chandelier::baker {
 namespace {
 
-/// Triangles in the order of their batches.
-struct CutPrimitive {
-  std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;
-  std::vector<std::uint32_t> triangle_counts;  // of each batch
-  std::uint32_t material = 0;
+/// Where a primitive goes in the pack.
+struct Place {
+  std::size_t vertex = 0, skin_vertex = 0;
+  bool skinned = false;  // the mesh is
+  struct Copy {
+    bool wanted = false;
+    std::size_t index = 0, batch = 0;
+  } copies[2];  // as modelled, mirrored
 };
 
-constexpr std::size_t kBatchVertices = 255;  // meshoptimizer's limit
-
-struct Meshlets {
-  std::vector<meshopt_Meshlet> meshlets;
-  std::vector<std::uint32_t> vertices;
-  std::vector<std::uint8_t> corners;
+struct MeshUse {
+  bool copies[2] = {false, false};  // as modelled, mirrored
 };
 
-std::size_t triangle_count(const Meshlets& pieces) {
-  std::size_t count = 0;
-  for (const meshopt_Meshlet& meshlet : pieces.meshlets) count += meshlet.triangle_count;
-  return count;
+std::vector<MeshUse> mesh_uses(const Scene& scene) {
+  std::vector<MeshUse> uses(scene.meshes.size());
+  for (const MeshInstance& instance : scene.instances) uses[instance.mesh].copies[is_mirrored(instance)] = true;
+  return uses;
 }
 
-/// Whether a vertex has so many triangles that meshoptimizer, which looks at all of them for each one that it takes,
-/// would need time quadratic in them: 29 s for a fan of 100 000.
-bool has_hub(const std::vector<std::uint32_t>& indices, std::size_t vertex_count) {
-  constexpr std::uint32_t kMostTriangles = 1000;
-  std::vector<std::uint32_t> triangles(vertex_count, 0);
-  for (const std::uint32_t vertex : indices) {
-    if (++triangles[vertex] > kMostTriangles) return true;
+bool is_skinned(const std::vector<CutPrimitive>& mesh) {
+  for (const CutPrimitive& primitive : mesh) {
+    if (!primitive.skin_vertices.empty()) return true;
   }
   return false;
 }
 
-Meshlets build_meshlets(const std::vector<std::uint32_t>& indices, const std::vector<Vertex>& vertices,
-                        std::size_t batch_triangles) {
-  const std::size_t bound = meshopt_buildMeshletsBound(indices.size(), kBatchVertices, batch_triangles);
-  const auto with_room = [&] {
-    return Meshlets{std::vector<meshopt_Meshlet>(bound), std::vector<std::uint32_t>(bound * kBatchVertices),
-                    std::vector<std::uint8_t>(bound * batch_triangles * 3)};
-  };
-  const auto scan = [&](const std::vector<std::uint32_t>& order) {
-    Meshlets out = with_room();
-    out.meshlets.resize(meshopt_buildMeshletsScan(out.meshlets.data(), out.vertices.data(), out.corners.data(),
-                                                  order.data(), order.size(), vertices.size(), kBatchVertices,
-                                                  batch_triangles));
-    return out;
-  };
-  if (has_hub(indices, vertices.size())) {
-    std::vector<std::uint32_t> order(indices.size());
-    meshopt_spatialSortTriangles(order.data(), indices.data(), indices.size(), &vertices[0].position_ls.x,
-                                 vertices.size(), sizeof(Vertex));
-    return scan(order);
+pack::SkinVertex record_of(const SkinVertex& in) {
+  pack::SkinVertex out;
+  for (std::size_t i = 0; i < 2; ++i) {
+    out.joints[i] = in.joints[2 * i] | std::uint32_t{in.joints[2 * i + 1]} << 16;
+    out.weights[i] = in.weights[2 * i] | std::uint32_t{in.weights[2 * i + 1]} << 16;
   }
-  std::vector<std::uint32_t> order(indices.size());
-  meshopt_optimizeVertexCache(order.data(), indices.data(), indices.size(), vertices.size());
-  Meshlets out = with_room();
-  out.meshlets.resize(meshopt_buildMeshlets(out.meshlets.data(), out.vertices.data(), out.corners.data(), order.data(),
-                                            order.size(), &vertices[0].position_ls.x, vertices.size(), sizeof(Vertex),
-                                            kBatchVertices, batch_triangles, 0.0f));
-  if (triangle_count(out) == indices.size() / 3) return out;
-  // Where squares of distances overflow (1e20 m), it leaves triangles out: cut in the order they come.
-  return scan(order);
-}
-
-CutPrimitive cut(Primitive&& primitive, std::size_t batch_triangles) {
-  weld(primitive);
-  if (primitive.needs_tangents) make_tangents(primitive);
-  CutPrimitive out;
-  out.material = primitive.material;
-  if (primitive.indices.empty()) return out;
-  const Meshlets pieces = build_meshlets(primitive.indices, primitive.vertices, batch_triangles);
-  for (const meshopt_Meshlet& meshlet : pieces.meshlets) {
-    for (std::size_t i = 0; i < std::size_t{meshlet.triangle_count} * 3; ++i) {
-      out.indices.push_back(pieces.vertices[meshlet.vertex_offset + pieces.corners[meshlet.triangle_offset + i]]);
-    }
-    out.triangle_counts.push_back(meshlet.triangle_count);
-  }
-  out.vertices.resize(primitive.vertices.size());
-  out.vertices.resize(meshopt_optimizeVertexFetch(out.vertices.data(), out.indices.data(), out.indices.size(),
-                                                  primitive.vertices.data(), primitive.vertices.size(),
-                                                  sizeof(Vertex)));
   return out;
 }
 
-void append_vertices(const std::vector<Vertex>& vertices, pack::Contents& pack) {
-  for (const Vertex& vertex : vertices) {
-    pack.positions.push_back({vertex.position_ls});
-    pack.vertex_attributes.push_back({pack::encode_normal(vertex.normal_ls), pack::encode_tangent(vertex.tangent_ls),
-                                      vertex.uv0, vertex.uv1, vertex.color});
-  }
+void write_vertices(const CutPrimitive& cut, const Place& place, pack::Contents& pack) {
+  constexpr SkinVertex kUnbound = {{}, {65535, 0, 0, 0}};
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cut.vertex_order.size(), 8192), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const std::uint32_t from = cut.vertex_order[i];
+      pack.positions[place.vertex + i] = {cut.vertices[from].position_ls};
+      pack.vertex_attributes[place.vertex + i] = cut.vertices[from].attributes;
+      if (!place.skinned) continue;
+      pack.skin_vertices[place.skin_vertex + i] =
+          record_of(cut.skin_vertices.empty() ? kUnbound : cut.skin_vertices[from]);
+    }
+  });
 }
 
-/// Appends a primitive's batches; its vertices start at `first_vertex` in the pack.
-void append_batches(const CutPrimitive& cut, std::uint32_t first_vertex, bool mirrored, pack::Contents& pack) {
-  const std::uint32_t* corner = cut.indices.data();
-  for (const std::uint32_t triangles : cut.triangle_counts) {
-    pack::Batch batch;
-    batch.material = cut.material;
-    batch.first_index = static_cast<std::uint32_t>(pack.indices.size());
-    batch.index_count = triangles * 3;
-    batch.cone_cutoff = 1;
-    batch.bounds_min_ls = batch.bounds_max_ls = cut.vertices[*corner].position_ls;
-    for (std::uint32_t t = 0; t < triangles; ++t, corner += 3) {
-      for (const int c : {0, mirrored ? 2 : 1, mirrored ? 1 : 2}) {
-        const glm::vec3& position = cut.vertices[corner[c]].position_ls;
-        batch.bounds_min_ls = glm::min(batch.bounds_min_ls, position);
-        batch.bounds_max_ls = glm::max(batch.bounds_max_ls, position);
-        pack.indices.push_back({first_vertex + corner[c]});
-      }
-    }
-    pack.batches.push_back(batch);
+/// Bounds and cone, from the corners of a batch.
+void measure(std::span<const glm::vec3> corners, pack::Batch& batch) {
+  batch.bounds_min_ls = batch.bounds_max_ls = corners[0];
+  for (const glm::vec3& corner : corners) {
+    batch.bounds_min_ls = glm::min(batch.bounds_min_ls, corner);
+    batch.bounds_max_ls = glm::max(batch.bounds_max_ls, corner);
   }
+  const NormalCone cone = normal_cone(corners);
+  batch.cone_apex_ls = cone.apex;
+  batch.cone_axis_ls = cone.axis;
+  batch.cone_cutoff = cone.cutoff;
+}
+
+/// Writes a primitive's batches and their corners.
+void write_batches(const CutPrimitive& cut, const Place& place, bool mirrored, pack::Contents& pack) {
+  const Place::Copy& copy = place.copies[mirrored];
+  std::vector<std::size_t> first(cut.batch_counts.size() + 1, 0);
+  for (std::size_t b = 0; b < cut.batch_counts.size(); ++b) first[b + 1] = first[b] + 3 * cut.batch_counts[b];
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cut.batch_counts.size(), 64), [&](const auto& range) {
+    std::vector<glm::vec3> corners;
+    for (std::size_t b = range.begin(); b < range.end(); ++b) {
+      pack::Batch& batch = pack.batches[copy.batch + b];
+      batch.material = cut.material;
+      batch.closed = b < cut.closed_batches;
+      batch.first_index = static_cast<std::uint32_t>(copy.index + first[b]);
+      batch.index_count = 3 * cut.batch_counts[b];
+      corners.clear();
+      for (std::size_t i = first[b]; i < first[b + 1]; ++i) {
+        const std::size_t from = !mirrored || i % 3 == 0 ? i : i % 3 == 1 ? i + 1 : i - 1;
+        pack.indices[copy.index + i] = {static_cast<std::uint32_t>(place.vertex + cut.indices[from])};
+        corners.push_back(cut.vertices[cut.vertex_order[cut.indices[from]]].position_ls);
+      }
+      measure(corners, batch);
+    }
+  });
 }
 
 void include(const pack::Batch& batch, pack::Mesh& mesh) {
@@ -133,17 +105,50 @@ void include(const pack::Batch& batch, pack::Mesh& mesh) {
   mesh.bounds_max_ls = first ? batch.bounds_max_ls : glm::max(mesh.bounds_max_ls, batch.bounds_max_ls);
 }
 
-struct MeshUse {
-  bool plain = false;
-  bool mirrored = false;
-};
-
-std::vector<MeshUse> mesh_uses(const Scene& scene) {
-  std::vector<MeshUse> uses(scene.meshes.size());
-  for (const MeshInstance& instance : scene.instances) {
-    (is_mirrored(instance) ? uses[instance.mesh].mirrored : uses[instance.mesh].plain) = true;
+/// Counts where everything goes, and makes room for it in the pack.
+std::vector<std::vector<Place>> find_places(const std::vector<std::vector<CutPrimitive>>& meshes,
+                                            const std::vector<MeshUse>& uses, pack::Contents& pack) {
+  std::vector<std::vector<Place>> places(meshes.size());
+  std::size_t vertices = 0, skin_vertices = 0, indices = 0, batches = 0;
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const bool skinned = is_skinned(meshes[m]);
+    for (const CutPrimitive& cut : meshes[m]) {
+      places[m].push_back({.vertex = vertices, .skin_vertex = skin_vertices, .skinned = skinned, .copies = {}});
+      vertices += cut.vertex_order.size();
+      if (skinned) skin_vertices += cut.vertex_order.size();
+    }
+    for (const int copy : {0, 1}) {
+      for (std::size_t p = 0; p < meshes[m].size() && uses[m].copies[copy]; ++p) {
+        places[m][p].copies[copy] = {true, indices, batches};
+        indices += meshes[m][p].indices.size();
+        batches += meshes[m][p].batch_counts.size();
+      }
+    }
   }
-  return uses;
+  pack.positions.resize(fit_u32(vertices, "vertices"));
+  pack.vertex_attributes.resize(vertices);
+  pack.skin_vertices.resize(skin_vertices);
+  pack.indices.resize(fit_u32(indices, "triangle corners"));
+  pack.batches.resize(fit_u32(batches, "batches"));
+  return places;
+}
+
+/// A mesh's record, for one of its copies; without batches where none is wanted.
+pack::Mesh mesh_record(const std::vector<CutPrimitive>& cuts, const std::vector<Place>& places, int copy,
+                       const pack::Contents& pack) {
+  pack::Mesh record;
+  if (cuts.empty() || !places[0].copies[copy].wanted) return record;
+  record.first_vertex = static_cast<std::uint32_t>(places[0].vertex);
+  record.first_skin_vertex = static_cast<std::uint32_t>(places[0].skin_vertex);
+  record.first_batch = static_cast<std::uint32_t>(places[0].copies[copy].batch);
+  for (std::size_t p = 0; p < cuts.size(); ++p) {
+    record.vertex_count += static_cast<std::uint32_t>(cuts[p].vertex_order.size());
+    for (std::size_t b = 0; b < cuts[p].batch_counts.size(); ++b) {
+      include(pack.batches[places[p].copies[copy].batch + b], record);
+    }
+  }
+  record.skin_vertex_count = places[0].skinned ? record.vertex_count : 0;
+  return record;
 }
 
 }  // namespace
@@ -152,47 +157,37 @@ bool is_mirrored(const MeshInstance& instance) {
   return glm::determinant(glm::dmat3(instance.world_from_local)) < 0;
 }
 
-std::vector<MeshRecords> make_batches(Scene& scene, std::uint32_t batch_triangles, const Progress& progress,
-                                      pack::Contents& pack) {
-  std::vector<Primitive*> primitives;
-  for (Mesh& mesh : scene.meshes) {
-    for (Primitive& primitive : mesh.primitives) primitives.push_back(&primitive);
-  }
-  progress.next("cutting " + std::to_string(primitives.size()) + " primitives into batches");
-  std::vector<CutPrimitive> cuts(primitives.size());
-  tbb::parallel_for(std::size_t{0}, primitives.size(),
-                    [&](std::size_t i) { cuts[i] = cut(std::move(*primitives[i]), batch_triangles); });
+std::vector<MeshRecords> make_batches(const Scene& scene, std::vector<PackedMesh>& meshes,
+                                      std::uint32_t batch_triangles, pack::Contents& pack) {
+  std::vector<std::vector<CutPrimitive>> cuts(meshes.size());
+  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
+    std::vector<PackedPrimitive>& primitives = meshes[m].primitives;
+    cuts[m].resize(primitives.size());
+    tbb::parallel_for(std::size_t{0}, primitives.size(),
+                      [&](std::size_t p) { cuts[m][p] = cut_into_batches(std::move(primitives[p]), batch_triangles); });
+  });
+  meshes.clear();
+  const std::vector<std::vector<Place>> places = find_places(cuts, mesh_uses(scene), pack);
 
-  const std::vector<MeshUse> uses = mesh_uses(scene);
-  std::vector<MeshRecords> out(scene.meshes.size());
-  std::size_t next = 0;
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const std::size_t first_cut = next;
-    const auto first_vertex = static_cast<std::uint32_t>(pack.positions.size());
-    std::vector<std::uint32_t> first_vertices;
-    for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p, ++next) {
-      first_vertices.push_back(static_cast<std::uint32_t>(pack.positions.size()));
-      append_vertices(cuts[next].vertices, pack);
-      fit_u32(pack.positions.size(), "vertices");
-    }
-    pack::Mesh record;
-    record.first_vertex = first_vertex;
-    record.vertex_count = static_cast<std::uint32_t>(pack.positions.size()) - first_vertex;
-    for (const bool mirrored : {false, true}) {
-      if (!(mirrored ? uses[m].mirrored : uses[m].plain)) continue;
-      record.first_batch = static_cast<std::uint32_t>(pack.batches.size());
-      record.batch_count = 0;
-      for (std::size_t i = first_cut; i < next; ++i) {
-        fit_u32(pack.indices.size() + cuts[i].indices.size(), "triangle corners");
-        append_batches(cuts[i], first_vertices[i - first_cut], mirrored, pack);
+  std::vector<std::array<pack::Mesh, 2>> records(cuts.size());
+  tbb::parallel_for(std::size_t{0}, cuts.size(), [&](std::size_t m) {
+    tbb::parallel_for(std::size_t{0}, cuts[m].size(), [&](std::size_t p) {
+      write_vertices(cuts[m][p], places[m][p], pack);
+      for (const bool mirrored : {false, true}) {
+        if (places[m][p].copies[mirrored].wanted) write_batches(cuts[m][p], places[m][p], mirrored, pack);
       }
-      fit_u32(pack.batches.size(), "batches");
-      for (std::size_t b = record.first_batch; b < pack.batches.size(); ++b) include(pack.batches[b], record);
-      if (record.batch_count == 0) continue;
-      (mirrored ? out[m].mirrored : out[m].plain) = static_cast<std::uint32_t>(pack.meshes.size());
-      pack.meshes.push_back(record);
+    });
+    for (const int copy : {0, 1}) records[m][copy] = mesh_record(cuts[m], places[m], copy, pack);
+    cuts[m] = {};
+  });
+
+  std::vector<MeshRecords> out(records.size());
+  for (std::size_t m = 0; m < records.size(); ++m) {
+    for (const int copy : {0, 1}) {
+      if (records[m][copy].batch_count == 0) continue;
+      (copy ? out[m].mirrored : out[m].plain) = static_cast<std::uint32_t>(pack.meshes.size());
+      pack.meshes.push_back(records[m][copy]);
     }
-    for (std::size_t i = first_cut; i < next; ++i) cuts[i] = {};
   }
   return out;
 }

@@ -2,14 +2,13 @@
 // Pass: meshes into batches of about a hundred neighbouring triangles.
 #pragma once
 
-#include "../progress.h"
 #include "../scene.h"
-#include "pack_schema.h"
+#include "packed.h"
 
 namespace chandelier::baker {
 
-/// Numbers of a scene mesh's records among the pack's meshes, as modelled and with its triangles' winding reversed; kNone
-/// where it has no triangles or no instance needs it.
+/// Numbers of a scene mesh's records among the pack's meshes, as modelled and with its triangles' winding reversed;
+/// kNone where it has no triangles or no instance needs it.
 struct MeshRecords {
   std::uint32_t plain = kNone;
   std::uint32_t mirrored = kNone;
@@ -17,9 +16,10 @@ struct MeshRecords {
 
 bool is_mirrored(const MeshInstance& instance);
 
-/// Fills positions, vertex_attributes, indices, batches and meshes; takes the meshes' vertices out of the scene. The result
-/// does not depend on the number of threads. Throws Error.
-std::vector<MeshRecords> make_batches(Scene& scene, std::uint32_t batch_triangles, const Progress& progress,
-                                      pack::Contents& pack);
+/// Fills positions, vertex_attributes, skin_vertices, indices, batches and meshes; empties `meshes`, which are those of
+/// the scene. The batches of a mesh come in the order of its primitives; within one the closed ones first, and
+/// neighbours near each other. The result does not depend on the number of threads. Throws Error.
+std::vector<MeshRecords> make_batches(const Scene& scene, std::vector<PackedMesh>& meshes,
+                                      std::uint32_t batch_triangles, pack::Contents& pack);
 
 }  // namespace chandelier::baker

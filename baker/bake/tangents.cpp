@@ -4,8 +4,12 @@
 // does.
 #include "tangents.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "weld.h"
 
 namespace chandelier::baker {
 namespace {
@@ -53,13 +57,14 @@ glm::vec3 across(const glm::vec3& normal, const glm::dvec3& sum) {
 /// Vertices by the side on which they are used: number of a vertex's copy, per vertex and side.
 class SidedVertices {
  public:
-  explicit SidedVertices(const std::vector<Vertex>& in) : in_(in), number_(2 * in.size(), kNone) {}
+  explicit SidedVertices(const Primitive& in) : in_(in), number_(2 * in.vertices.size(), kNone) {}
 
   std::uint32_t use(std::uint32_t vertex, bool mirrored) {
     std::uint32_t& number = number_[2 * std::size_t{vertex} + mirrored];
     if (number == kNone) {
       number = static_cast<std::uint32_t>(vertices.size());
-      vertices.push_back(in_[vertex]);
+      vertices.push_back(in_.vertices[vertex]);
+      if (!in_.skin_vertices.empty()) skin_vertices.push_back(in_.skin_vertices[vertex]);
       vertices.back().tangent_ls.w = mirrored ? -1.0f : 1.0f;
       sums.emplace_back(0);
     }
@@ -67,17 +72,18 @@ class SidedVertices {
   }
 
   std::vector<Vertex> vertices;
+  std::vector<SkinVertex> skin_vertices;
   std::vector<glm::dvec3> sums;
 
  private:
-  const std::vector<Vertex>& in_;
+  const Primitive& in_;
   std::vector<std::uint32_t> number_;
 };
 
 }  // namespace
 
 void make_tangents(Primitive& primitive) {
-  SidedVertices sided(primitive.vertices);
+  SidedVertices sided(primitive);
   for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
     const std::uint32_t corners[] = {primitive.indices[t], primitive.indices[t + 1], primitive.indices[t + 2]};
     const Vertex* v[] = {&primitive.vertices[corners[0]], &primitive.vertices[corners[1]],
@@ -94,6 +100,22 @@ void make_tangents(Primitive& primitive) {
     vertex.tangent_ls = glm::vec4(across(vertex.normal_ls, sided.sums[i]), vertex.tangent_ls.w);
   }
   primitive.vertices = std::move(sided.vertices);
+  primitive.skin_vertices = std::move(sided.skin_vertices);
+}
+
+std::size_t make_tangents(Scene& scene) {
+  std::vector<Primitive*> without;
+  for (Mesh& mesh : scene.meshes) {
+    for (Primitive& primitive : mesh.primitives) {
+      if (primitive.needs_tangents) without.push_back(&primitive);
+    }
+  }
+  tbb::parallel_for(std::size_t{0}, without.size(), [&](std::size_t i) {
+    weld(*without[i]);
+    make_tangents(*without[i]);
+    without[i]->needs_tangents = false;
+  });
+  return without.size();
 }
 
 }  // namespace chandelier::baker

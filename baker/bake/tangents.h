@@ -9,4 +9,7 @@ namespace chandelier::baker {
 /// Replaces all tangents of a welded primitive. A vertex between mirrored and plain texture coordinates becomes two.
 void make_tangents(Primitive& primitive);
 
+/// Welds each primitive that needs tangents, and makes them; returns how many there were.
+std::size_t make_tangents(Scene& scene);
+
 }  // namespace chandelier::baker

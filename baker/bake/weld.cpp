@@ -1,37 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
-// Welds with meshoptimizer: exact, byte by byte.
+// Welds exactly: what is nearly equal was made equal by its grid.
 #include "weld.h"
 
-#include <meshoptimizer.h>
+#include <cstring>
+
+#include "equal.h"
 
 namespace chandelier::baker {
 namespace {
 
-void drop_degenerate(std::vector<std::uint32_t>& indices) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const std::uint32_t a = indices[i], b = indices[i + 1], c = indices[i + 2];
-    if (a == b || b == c || c == a) continue;
-    indices[kept++] = a;
-    indices[kept++] = b;
-    indices[kept++] = c;
+template <typename Record>
+std::uint32_t hash_of(const Record& record) {
+  static_assert(sizeof(Record) % sizeof(std::uint32_t) == 0);
+  std::uint32_t words[sizeof(Record) / sizeof(std::uint32_t)];
+  std::memcpy(words, &record, sizeof(Record));
+  return hash_words(words, std::size(words));
+}
+
+template <typename Record>
+bool same(const Record& a, const Record& b) {
+  return std::memcmp(&a, &b, sizeof(Record)) == 0;
+}
+
+/// Works on both stages' primitives, whose members have the same names.
+template <typename AnyPrimitive>
+void weld_any(AnyPrimitive& primitive) {
+  auto& vertices = primitive.vertices;
+  auto& skin = primitive.skin_vertices;
+  const bool skinned = !skin.empty();
+  std::vector<std::uint32_t> number = first_equal(
+      vertices.size(),
+      [&](std::size_t i) {
+        return skinned ? hash_of(vertices[i]) ^ (hash_of(skin[i]) * 0x9E3779B1u) : hash_of(vertices[i]);
+      },
+      [&](std::size_t i, std::size_t j) {
+        return same(vertices[i], vertices[j]) && (!skinned || same(skin[i], skin[j]));
+      });
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (number[i] < i) {
+      number[i] = number[number[i]];  // the first one's, which has its new number already
+      continue;
+    }
+    vertices[kept] = vertices[i];
+    if (skinned) skin[kept] = skin[i];
+    number[i] = kept++;
   }
-  indices.resize(kept);
+  vertices.resize(kept);
+  if (skinned) skin.resize(kept);
+  for (std::uint32_t& index : primitive.indices) index = number[index];
 }
 
 }  // namespace
 
 void weld(Primitive& primitive) {
-  std::vector<std::uint32_t> remap(primitive.vertices.size());
-  const std::size_t count =
-      meshopt_generateVertexRemap(remap.data(), primitive.indices.data(), primitive.indices.size(),
-                                  primitive.vertices.data(), primitive.vertices.size(), sizeof(Vertex));
-  std::vector<Vertex> vertices(count);
-  meshopt_remapVertexBuffer(vertices.data(), primitive.vertices.data(), primitive.vertices.size(), sizeof(Vertex),
-                            remap.data());
-  meshopt_remapIndexBuffer(primitive.indices.data(), primitive.indices.data(), primitive.indices.size(), remap.data());
-  primitive.vertices = std::move(vertices);
-  drop_degenerate(primitive.indices);
+  weld_any(primitive);
+}
+
+void weld(PackedPrimitive& primitive) {
+  weld_any(primitive);
 }
 
 }  // namespace chandelier::baker

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// One grid per mesh, so that what is shared between its primitives stays shared. Values stay floats: multiples of a
+// power of two are exact in them, and the codecs find the zeros.
+#include "quantize.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "octahedral.h"
+
+namespace chandelier::baker {
+namespace {
+
+/// What a mesh's vertices lose, measured: greatest values, so that their order does not matter.
+struct Errors {
+  double distance_ls = 0;
+  double chord = 0;  // between unit vectors
+  double uv = 0;
+
+  void include(const Errors& other) {
+    distance_ls = std::max(distance_ls, other.distance_ls);
+    chord = std::max(chord, other.chord);
+    uv = std::max(uv, other.uv);
+  }
+};
+
+/// Which attributes are ever read.
+struct Needs {
+  bool tangent = false, uv0 = false, uv1 = false;
+};
+
+Needs needs_of(const Material& material) {
+  Needs needs;
+  needs.tangent = material.normal.texture != kNone;
+  for (const TextureUse* use : {&material.base_color, &material.metallic_roughness, &material.normal,
+                                &material.occlusion, &material.emissive_map}) {
+    if (use->texture != kNone) (use->uv1 ? needs.uv1 : needs.uv0) = true;
+  }
+  return needs;
+}
+
+/// Rounds to multiples of a power of two; 0 keeps the value. Where a float is coarser than the step, it is one already.
+class Grid {
+ public:
+  explicit Grid(double step) : step_(step), per_step_(step > 0 ? 1 / step : 0) {}
+
+  float snap(float value) const {
+    constexpr double kMostSteps = 16777216;  // above, floats themselves are multiples
+    const double steps = double{value} * per_step_;
+    if (step_ == 0 || !(std::abs(steps) < kMostSteps)) return value;
+    return static_cast<float>(std::nearbyint(steps) * step_) + 0.0f;  // no negative zero
+  }
+
+  template <typename Vector>
+  Vector snap_all(Vector v) const {
+    for (int i = 0; i < Vector::length(); ++i) v[i] = snap(v[i]);
+    return v;
+  }
+
+ private:
+  double step_, per_step_;
+};
+
+struct Coding {
+  Grid position, uv;
+  int normal_bits, tangent_bits;
+};
+
+double chord(const glm::vec3& a, const glm::vec3& b) {
+  return glm::distance(glm::normalize(glm::dvec3(a)), glm::normalize(glm::dvec3(b)));
+}
+
+glm::vec2 code_uv(const glm::vec2& uv, const Coding& coding, Errors& errors) {
+  const glm::vec2 out = coding.uv.snap_all(uv);
+  errors.uv = std::max({errors.uv, std::abs(double{out.x} - uv.x), std::abs(double{out.y} - uv.y)});
+  return out;
+}
+
+PackedVertex code(const Vertex& in, const Coding& coding, const Needs& needs, Errors& errors) {
+  PackedVertex out;
+  out.position_ls = coding.position.snap_all(in.position_ls);
+  errors.distance_ls =
+      std::max(errors.distance_ls, glm::distance(glm::dvec3(out.position_ls), glm::dvec3(in.position_ls)));
+  pack::VertexAttributes& to = out.attributes;
+  to.normal_ls = pack::encode_normal(in.normal_ls, coding.normal_bits);
+  errors.chord = std::max(errors.chord, chord(pack::decode_normal(to.normal_ls), in.normal_ls));
+  to.tangent_ls = 0;
+  if (needs.tangent) {
+    to.tangent_ls = pack::encode_tangent(in.tangent_ls, coding.tangent_bits);
+    errors.chord = std::max(errors.chord, chord(pack::decode_tangent(to.tangent_ls), in.tangent_ls));
+  }
+  to.uv0 = needs.uv0 ? code_uv(in.uv0, coding, errors) : glm::vec2(0);
+  to.uv1 = needs.uv1 ? code_uv(in.uv1, coding, errors) : glm::vec2(0);
+  to.color = in.color;
+  return out;
+}
+
+PackedPrimitive code(Primitive&& in, const Coding& coding, const Needs& needs, Errors& errors) {
+  using Range = tbb::blocked_range<std::size_t>;
+  PackedPrimitive out;
+  out.vertices.resize(in.vertices.size());
+  errors = tbb::parallel_reduce(
+      Range(0, in.vertices.size(), 4096), errors,
+      [&](const Range& range, Errors sum) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          out.vertices[i] = code(in.vertices[i], coding, needs, sum);
+        }
+        return sum;
+      },
+      [](Errors a, const Errors& b) { return a.include(b), a; });
+  out.skin_vertices = std::move(in.skin_vertices);
+  out.indices = std::move(in.indices);
+  out.material = in.material;
+  in = {};
+  return out;
+}
+
+double longest_side(const Mesh& mesh) {
+  glm::dvec3 low(INFINITY), high(-INFINITY);
+  for (const Primitive& primitive : mesh.primitives) {
+    for (const Vertex& vertex : primitive.vertices) {
+      low = glm::min(low, glm::dvec3(vertex.position_ls));
+      high = glm::max(high, glm::dvec3(vertex.position_ls));
+    }
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z, 0.0});
+}
+
+std::vector<glm::dmat4> world_from_nodes(const Scene& scene) {
+  std::vector<glm::dmat4> out;
+  for (const Node& node : scene.nodes) {
+    out.push_back(node.parent == kNone ? node.parent_from_local : out[node.parent] * node.parent_from_local);
+  }
+  return out;
+}
+
+/// Per mesh: the most that an instance stretches it, in the rest pose; below 0 where there is no instance.
+std::vector<double> largest_scales(const Scene& scene) {
+  const std::vector<glm::dmat4> nodes = world_from_nodes(scene);
+  std::vector<double> out(scene.meshes.size(), -1);
+  for (const MeshInstance& instance : scene.instances) {
+    double& largest = out[instance.mesh];
+    largest = std::max(largest, largest_scale(instance.world_from_local));
+    if (instance.skin == kNone) continue;
+    for (const Joint& joint : scene.skins[instance.skin].joints) {
+      largest = std::max(largest, largest_scale(nodes[joint.node] * glm::dmat4(joint.joint_from_bind)));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+double largest_scale(const glm::dmat4& matrix) {
+  // The square root of the largest eigenvalue of AᵀA, a symmetric matrix: Smith 1961, Eigenvalues of a symmetric 3 × 3
+  // matrix.
+  const glm::dmat3 a(matrix);
+  const glm::dmat3 m = glm::transpose(a) * a;
+  const double mean = (m[0][0] + m[1][1] + m[2][2]) / 3;
+  double off = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) off += std::pow(m[i][j] - (i == j ? mean : 0), 2);
+  }
+  const double p = std::sqrt(off / 6);
+  if (!(p > 0)) return std::sqrt(mean);
+  const double r = std::clamp(glm::determinant((m - glm::dmat3(mean)) / p) / 2, -1.0, 1.0);
+  return std::sqrt(mean + 2 * p * std::cos(std::acos(r) / 3));
+}
+
+double grid_step(double error_m, double scale, double extent_ls) {
+  constexpr double kSteps = 16384;
+  // Half a step along each axis: √3/2 of it in all. The margin covers rounding here and in the instance's floats.
+  const double most = std::min(2 * error_m / (std::sqrt(3.0) * scale) * (1 - 1e-6), extent_ls / kSteps);
+  if (!(most >= 1e-30) || !std::isfinite(most)) return 0;
+  return std::exp2(std::floor(std::log2(most)));
+}
+
+std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings, pack::BakeInfo& info) {
+  const std::vector<double> scales = largest_scales(scene);
+  std::vector<PackedMesh> out(scene.meshes.size());
+  std::vector<Errors> errors(scene.meshes.size());
+  tbb::parallel_for(std::size_t{0}, scene.meshes.size(), [&](std::size_t m) {
+    std::vector<Primitive>& primitives = scene.meshes[m].primitives;
+    if (scales[m] >= 0) {
+      const double step = settings.position_error_m > 0
+                              ? grid_step(settings.position_error_m, scales[m], longest_side(scene.meshes[m]))
+                              : 0;
+      const Coding coding{Grid(step), Grid(settings.uv_bits > 0 ? std::exp2(-settings.uv_bits) : 0),
+                          settings.normal_bits, std::min(settings.normal_bits, 15)};
+      for (Primitive& primitive : primitives) {
+        const Needs needs = needs_of(scene.materials[primitive.material]);
+        out[m].primitives.push_back(code(std::move(primitive), coding, needs, errors[m]));
+      }
+    }
+    primitives = {};
+  });
+  Errors all;
+  for (std::size_t m = 0; m < errors.size(); ++m) {
+    errors[m].distance_ls *= std::max(scales[m], 0.0);
+    all.include(errors[m]);
+  }
+  // The next float that is not below: what is said must hold.
+  const auto up = [](double value) { return value > 0 ? std::nextafter(static_cast<float>(value), INFINITY) : 0.0f; };
+  info.position_error_m = up(all.distance_ls);
+  info.normal_error_rad = up(2 * std::asin(std::min(all.chord / 2, 1.0)));
+  info.uv_error = up(all.uv);
+  return out;
+}
+
+}  // namespace chandelier::baker
