@@ -40,6 +40,7 @@ void make_bvh(std::vector<BvhItem>& items, std::vector<pack::BvhNode>& nodes, st
   const BvhShape shape = shape_bvh(items);
   nodes.assign(shape.size(), {});
   fill_bvh(items, shape, {}, nodes, {});
+  refs.clear();
   refs.reserve(items.size());
   for (const BvhItem& item : items) refs.push_back({item.number});
   pass.bytes = std::span(nodes).size_bytes() + std::span(refs).size_bytes();
