@@ -114,7 +114,7 @@ void write_pack(const baker::Options& options, const pack::Contents& pack, Outco
     pack::write_text(options.depfile, baker::depfile_text(options.output, outcome.files_read));
   }
   outcome.report.run("write", [&](baker::PassReport& pass) {
-    pack::write(options.output, pack);
+    pack::write(options.output, pack, options.compress ? pack::Compression::smallest : pack::Compression::off);
     pass.bytes = outcome.pack_bytes = std::filesystem::file_size(options.output);
   });
   outcome.triangles = pack.bake_info.unique_triangles;

@@ -16,6 +16,7 @@ struct Options {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   BakeSettings bake;
+  bool compress = false;                                      // sections take the codecs that make them smallest
   std::vector<std::pair<std::string, std::string>> settings;  // the same as text: each option's name and value
   std::filesystem::path cache;                                // empty: none
   std::filesystem::path depfile;                              // empty: none

@@ -18,12 +18,17 @@
 #include <utility>
 
 #include "pack_checks.h"
+#include "pack_codec.h"
+#include "parallel.h"
 
 namespace chandelier::pack {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "packs are little-endian and used in place");
 static_assert(sizeof(std::size_t) == 8, "packs have 64-bit sizes");
+
+/// Below this a thread takes longer to start than to help.
+constexpr std::size_t few_bytes = std::size_t{4} << 20;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
   throw Error(path.string() + ": " + what);
@@ -48,24 +53,28 @@ void write_zeros(TemporaryFile& file, std::uint64_t size) {
   file.write(zeros, size);
 }
 
-struct Layout {
+struct FileLayout {
   FileHeader header;
   std::vector<SectionEntry> table;
   std::vector<std::span<const std::byte>> sections;
 };
 
-Layout lay_out(const View& view) {
-  Layout layout;
+/// `encoded` has one entry for each of section_infos, or is empty.
+FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
+  FileLayout layout;
   for (std::size_t i = 0; i < section_infos.size(); ++i) {
-    const std::span<const std::byte> bytes = section_bytes(view, i);
-    if (bytes.empty()) continue;
-    layout.sections.push_back(bytes);
+    const std::span<const std::byte> records = section_bytes(view, i);
+    if (records.empty()) continue;
+    const bool raw = encoded.empty() || encoded[i].codec == Codec::raw;
+    const std::span<const std::byte> stored = raw ? records : std::span<const std::byte>(encoded[i].bytes);
+    layout.sections.push_back(stored);
     SectionEntry& entry = layout.table.emplace_back();
     entry.kind = static_cast<std::uint32_t>(section_infos[i].kind);
-    entry.size_bytes = bytes.size();
+    entry.codec = raw ? Codec::raw : encoded[i].codec;
+    entry.size_bytes = stored.size();
     entry.stride_bytes = section_infos[i].stride_bytes;
-    entry.count = bytes.size() / entry.stride_bytes;
-    entry.checksum = XXH3_64bits(bytes.data(), bytes.size());
+    entry.count = records.size() / entry.stride_bytes;
+    entry.checksum = XXH3_64bits(stored.data(), stored.size());
   }
   std::uint64_t end = sizeof(FileHeader) + layout.table.size() * sizeof(SectionEntry);
   for (SectionEntry& entry : layout.table) {
@@ -81,7 +90,7 @@ Layout lay_out(const View& view) {
   return layout;
 }
 
-void write_layout(TemporaryFile& file, const Layout& layout) {
+void write_layout(TemporaryFile& file, const FileLayout& layout) {
   file.write(&layout.header, sizeof(FileHeader));
   file.write(layout.table.data(), layout.table.size() * sizeof(SectionEntry));
   std::uint64_t end = sizeof(FileHeader) + layout.table.size() * sizeof(SectionEntry);
@@ -94,38 +103,23 @@ void write_layout(TemporaryFile& file, const Layout& layout) {
 
 // ---- Reading
 
-/// Unmaps unless it is released into a File.
-struct Mapping {
-  void* data = nullptr;
-  std::size_t size = 0;
-
-  explicit Mapping(const std::filesystem::path& path);
-  ~Mapping() {
-    if (data) munmap(data, size);
-  }
-  Mapping(const Mapping&) = delete;
-  Mapping& operator=(const Mapping&) = delete;
-};
-
-Mapping::Mapping(const std::filesystem::path& path) {
+Mapping map_file(const std::filesystem::path& path) {
   // Non-blocking, so that a FIFO is refused below instead of waited for.
   const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) fail_system(path, "cannot open", errno);
   struct stat status = {};
   const int stat_error = fstat(descriptor, &status) == 0 ? 0 : errno;
   const bool regular = stat_error == 0 && S_ISREG(status.st_mode);
-  int map_error = 0;
-  if (regular && status.st_size > 0) {
-    size = static_cast<std::size_t>(status.st_size);
-    data = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-    map_error = data == MAP_FAILED ? errno : 0;
-    if (map_error != 0) data = nullptr;
-  }
+  const std::size_t size = regular ? static_cast<std::size_t>(status.st_size) : 0;
+  void* data = size > 0 ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0) : nullptr;
+  const int map_error = data == MAP_FAILED ? errno : 0;
   close(descriptor);
   if (stat_error != 0) fail_system(path, "cannot read", stat_error);
   if (!regular) fail(path, S_ISDIR(status.st_mode) ? "not a file (a folder)" : "not a regular file");
   if (map_error != 0) fail_system(path, "cannot map", map_error);
+  Mapping mapping(data, size);
   if (size < sizeof(FileHeader)) fail(path, "too short for a pack (" + std::to_string(size) + " bytes)");
+  return mapping;
 }
 
 std::string header_fault(const FileHeader& header, std::uint64_t size) {
@@ -149,28 +143,31 @@ std::string header_fault(const FileHeader& header, std::uint64_t size) {
   return {};
 }
 
-/// Checks an entry whose section must start at `offset`, and its bytes. `info` is what its kind should be like.
+std::string wrong(const char* field, std::uint64_t is, std::uint64_t must_be) {
+  return std::string(field) + ": " + std::to_string(is) + " where " + std::to_string(must_be) + " must be";
+}
+
+/// Checks an entry whose section must start at `offset`. `info` is what its kind should be like.
 std::string entry_fault(const SectionEntry& entry, const SectionInfo& info, std::uint64_t offset,
-                        std::span<const std::byte> file) {
-  const auto wrong = [](const char* field, std::uint64_t is, std::uint64_t must_be) {
-    return std::string(field) + ": " + std::to_string(is) + " where " + std::to_string(must_be) + " must be";
-  };
-  if (!is_valid(entry.codec))
+                        std::uint64_t file_bytes) {
+  if (!is_valid(entry.codec)) {
     return "codec: " + std::to_string(static_cast<std::uint32_t>(entry.codec)) + " is no Codec";
+  }
   if (entry.reserved != 0) return wrong("reserved", entry.reserved, 0);
   if (entry.stride_bytes != info.stride_bytes) return wrong("stride_bytes", entry.stride_bytes, info.stride_bytes);
   if (entry.offset_bytes != offset) return wrong("offset_bytes", entry.offset_bytes, offset);
-  if (entry.offset_bytes > file.size() || entry.size_bytes > file.size() - entry.offset_bytes) {
+  if (entry.offset_bytes > file_bytes || entry.size_bytes > file_bytes - entry.offset_bytes) {
     return "size_bytes: " + std::to_string(entry.size_bytes) + " from " + std::to_string(offset) +
-           " is past the file's end at " + std::to_string(file.size());
+           " is past the file's end at " + std::to_string(file_bytes);
   }
   if (entry.size_bytes == 0) return wrong("size_bytes", 0, info.stride_bytes);
+  if (entry.codec != Codec::raw) {
+    return coded_size_fault(entry.codec, entry.stride_bytes, entry.size_bytes, entry.count);
+  }
   if (entry.size_bytes % entry.stride_bytes != 0 || entry.size_bytes / entry.stride_bytes != entry.count) {
     return "count: " + std::to_string(entry.count) + " of " + std::to_string(entry.stride_bytes) +
            " bytes are not the size " + std::to_string(entry.size_bytes);
   }
-  const std::uint64_t checksum = XXH3_64bits(file.data() + entry.offset_bytes, entry.size_bytes);
-  if (entry.checksum != checksum) return wrong("checksum", entry.checksum, checksum);
   return {};
 }
 
@@ -178,76 +175,140 @@ bool all_zero(std::span<const std::byte> bytes) {
   return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
 }
 
-/// Checks table and sections, and points `view` at them. Sections follow each other as the writer lays them out, each
-/// at the next multiple of the alignment, so none can overlap and every byte of the file is one that something checks.
-std::string table_fault(std::span<const std::byte> file, const FileHeader& header, View& view) {
-  const std::byte* table_data = file.data() + sizeof(FileHeader);
-  const std::size_t table_bytes = header.section_count * sizeof(SectionEntry);
-  if (XXH3_64bits(table_data, table_bytes) != header.table_checksum) {
-    return "header.table_checksum: not that of the table" + in_parentheses(header.table_checksum);
-  }
-  const std::span table(reinterpret_cast<const SectionEntry*>(table_data), header.section_count);
-  std::uint64_t end = sizeof(FileHeader) + table_bytes;
+/// A table entry that passed entry_fault().
+struct Found {
+  SectionEntry entry;
+  std::size_t info;  // of section_infos
+  std::string place;
+};
+
+std::string in_section(const Found& found, const std::string& line) {
+  return found.place + line + " (section " + std::string(section_infos[found.info].name) + ")";
+}
+
+/// Checks the table. Sections follow each other as the writer lays them out, each at the next multiple of the
+/// alignment, so none can overlap and every byte of the file is one that something checks.
+std::string table_fault(std::span<const std::byte> file, std::span<const SectionEntry> table,
+                        std::vector<Found>& sections) {
+  std::uint64_t end = sizeof(FileHeader) + table.size_bytes();
   std::size_t next_info = 0;
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const SectionEntry& entry = table[i];
     const std::string place = "table[" + std::to_string(i) + "].";
     while (next_info < section_infos.size() &&
-           static_cast<std::uint32_t>(section_infos[next_info].kind) != entry.kind) {
+           static_cast<std::uint32_t>(section_infos[next_info].kind) != table[i].kind) {
       ++next_info;
     }
     if (next_info == section_infos.size()) {
-      return place + "kind: unknown, or not above the one before" + in_parentheses(entry.kind);
+      return place + "kind: unknown, or not above the one before" + in_parentheses(table[i].kind);
     }
+    const Found& found = sections.emplace_back(Found{table[i], next_info++, place});
     const std::uint64_t offset = align_up(end);
-    if (std::string line = entry_fault(entry, section_infos[next_info], offset, file); !line.empty()) {
-      return place + line + " (section " + std::string(section_infos[next_info].name) + ")";
+    if (std::string line = entry_fault(found.entry, section_infos[found.info], offset, file.size()); !line.empty()) {
+      return in_section(found, line);
     }
     if (!all_zero(file.subspan(end, offset - end))) return place + "offset_bytes: the bytes before it are not zero";
-    set_section(view, next_info, file.data() + offset, entry.count);
-    end = offset + entry.size_bytes;
-    ++next_info;
+    end = offset + found.entry.size_bytes;
   }
   if (end != file.size()) return "bytes after the last section" + in_parentheses(file.size() - end);
   return {};
 }
 
+std::string checksum_fault(std::span<const std::byte> file, const std::vector<Found>& sections) {
+  std::vector<std::string> faults(sections.size());
+  const auto check_one = [&](std::size_t i) {
+    const SectionEntry& entry = sections[i].entry;
+    const std::uint64_t checksum = XXH3_64bits(file.data() + entry.offset_bytes, entry.size_bytes);
+    if (entry.checksum != checksum) faults[i] = in_section(sections[i], wrong("checksum", entry.checksum, checksum));
+  };
+  if (file.size() < few_bytes) {
+    for (std::size_t i = 0; i < sections.size(); ++i) check_one(i);
+  } else {
+    parallel_for(sections.size(), check_one);
+  }
+  const auto first = std::ranges::find_if(faults, [](const std::string& line) { return !line.empty(); });
+  return first == faults.end() ? std::string() : *first;
+}
+
+/// Points `view` at the sections' records: in the file, or in `decoded`, which it makes.
+std::string place_records(std::span<const std::byte> file, const std::vector<Found>& sections, Mapping& decoded,
+                          View& view) {
+  std::uint64_t bytes = 0;
+  for (const Found& found : sections) {
+    if (found.entry.codec != Codec::raw) bytes += align_up(found.entry.count * found.entry.stride_bytes);
+  }
+  if (bytes > 0) {
+    void* data = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (data == MAP_FAILED) return "not enough memory to decode it (" + std::to_string(bytes) + " bytes)";
+    decoded = Mapping(data, bytes);
+  }
+  std::vector<CodedSection> coded;
+  std::vector<const Found*> coded_found;
+  std::span<std::byte> room = decoded.bytes();
+  for (const Found& found : sections) {
+    const SectionEntry& entry = found.entry;
+    const std::span<const std::byte> stored = file.subspan(entry.offset_bytes, entry.size_bytes);
+    const std::byte* records = stored.data();
+    if (entry.codec != Codec::raw) {
+      const std::uint64_t size = entry.count * entry.stride_bytes;
+      coded.push_back({entry.codec, entry.stride_bytes, stored, room.first(size)});
+      coded_found.push_back(&found);
+      records = room.data();
+      room = room.subspan(align_up(size));
+    }
+    set_section(view, found.info, records, entry.count);
+  }
+  const std::vector<std::string> faults = decode_sections(coded);
+  for (std::size_t i = 0; i < coded.size(); ++i) {
+    if (faults[i].empty()) continue;
+    return in_section(*coded_found[i], "codec: " + std::string(name_of(coded[i].codec)) + ": " + faults[i]);
+  }
+  return {};
+}
+
 }  // namespace
 
-void write(const std::filesystem::path& path, const View& view, Sync sync) {
+void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression) {
   TemporaryFile file(path);
-  write_layout(file, lay_out(view));
+  std::vector<Encoded> encoded;
+  if (compression == Compression::smallest) encoded = encode_sections(view);
+  write_layout(file, lay_out(view, encoded));
   file.commit(sync);
 }
 
-void write(const std::filesystem::path& path, const Contents& contents) {
-  write(path, view_of(contents), Sync::yes);
+void write(const std::filesystem::path& path, const Contents& contents, Compression compression) {
+  write(path, view_of(contents), Sync::yes, compression);
 }
 
-File::File(const std::filesystem::path& path) {
-  Mapping mapping(path);
-  const std::span bytes(static_cast<const std::byte*>(mapping.data), mapping.size);
-  const FileHeader& header = *reinterpret_cast<const FileHeader*>(mapping.data);
-  if (std::string line = header_fault(header, mapping.size); !line.empty()) fail(path, line);
-  if (std::string line = table_fault(bytes, header, view_); !line.empty()) fail(path, line);
-  if (std::string line = check(view_); !line.empty()) fail(path, line);
-  data_ = std::exchange(mapping.data, nullptr);
-  size_ = mapping.size;
-}
-
-File::~File() {
+Mapping::~Mapping() {
   if (data_) munmap(data_, size_);
 }
 
+File::File(const std::filesystem::path& path) : file_(map_file(path)) {
+  const std::span<const std::byte> bytes = file_.bytes();
+  const FileHeader& header = *reinterpret_cast<const FileHeader*>(bytes.data());
+  if (std::string line = header_fault(header, bytes.size()); !line.empty()) fail(path, line);
+  table_ = {reinterpret_cast<const SectionEntry*>(bytes.data() + sizeof(FileHeader)), header.section_count};
+  if (XXH3_64bits(table_.data(), table_.size_bytes()) != header.table_checksum) {
+    fail(path, "header.table_checksum: not that of the table" + in_parentheses(header.table_checksum));
+  }
+  std::vector<Found> sections;
+  if (std::string line = table_fault(bytes, table_, sections); !line.empty()) fail(path, line);
+  if (std::string line = checksum_fault(bytes, sections); !line.empty()) fail(path, line);
+  if (std::string line = place_records(bytes, sections, decoded_, view_); !line.empty()) fail(path, line);
+  if (std::string line = check(view_); !line.empty()) fail(path, line);
+}
+
 File::File(File&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)),
-      size_(std::exchange(other.size_, 0)),
-      view_(std::exchange(other.view_, {})) {}
+    : file_(std::move(other.file_)),
+      decoded_(std::move(other.decoded_)),
+      view_(std::exchange(other.view_, {})),
+      table_(std::exchange(other.table_, {})) {}
 
 File& File::operator=(File&& other) noexcept {
-  std::swap(data_, other.data_);
-  std::swap(size_, other.size_);
+  std::swap(file_, other.file_);
+  std::swap(decoded_, other.decoded_);
   std::swap(view_, other.view_);
+  std::swap(table_, other.table_);
   return *this;
 }
 

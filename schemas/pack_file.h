@@ -3,8 +3,10 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "pack_schema.h"  // generated from pack.xml: records, enums, Contents (owning vectors), View (spans), validate()
 #include "temporary_file.h"
@@ -16,33 +18,57 @@ struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// `smallest` stores each section with the codec that makes it smallest: slower to write, and decoded when it is
+/// opened.
+enum class Compression { off, smallest };
+
 /// Writes `contents` to a temporary file beside `path`, syncs it and renames it over `path`; on failure nothing is left
 /// behind and an older pack stays. Same contents, same bytes. Values are not looked at: check() of pack_checks.h says
 /// beforehand whether the pack will open. Throws Error.
-void write(const std::filesystem::path& path, const Contents& contents);
-void write(const std::filesystem::path& path, const View& view, Sync sync);
+void write(const std::filesystem::path& path, const Contents& contents, Compression compression = Compression::off);
+void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression = Compression::off);
+
+/// Memory from mmap().
+class Mapping {
+ public:
+  Mapping() = default;
+  Mapping(void* data, std::size_t size) : data_(data), size_(size) {}
+  ~Mapping();
+  Mapping(Mapping&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  Mapping& operator=(Mapping&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+  std::span<std::byte> bytes() const { return {static_cast<std::byte*>(data_), size_}; }
+
+ private:
+  void* data_ = nullptr;
+  std::size_t size_ = 0;
+};
 
 /// A mapped pack. Every offset, count, index, enum and float has been checked when the constructor returns.
 class File {
  public:
   /// Throws Error.
   explicit File(const std::filesystem::path& path);
-  ~File();
   File(File&& other) noexcept;
   File& operator=(File&& other) noexcept;
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
 
   /// One span per section; empty where the pack has none. Valid as long as the File.
   const View& view() const { return view_; }
   /// The text of a string of this pack.
   std::string_view text(const StringRef& ref) const;
-  std::size_t size_bytes() const { return size_; }
+  std::size_t size_bytes() const { return file_.bytes().size(); }
+  /// How each section that is not empty is stored.
+  std::span<const SectionEntry> table() const { return table_; }
 
  private:
-  void* data_ = nullptr;
-  std::size_t size_ = 0;
+  Mapping file_;
+  Mapping decoded_;  ///< What codecs made of sections that are not raw.
   View view_;
+  std::span<const SectionEntry> table_;
 };
 
 }  // namespace chandelier::pack

@@ -63,7 +63,19 @@ const Lie lies[] = {
     {"KindZero", [](Parts& p) { p.table[0].kind = 0; }, "table[0].kind: unknown, or not above"},
     {"KindTwice", [](Parts& p) { p.table[3].kind = 3; }, "table[3].kind: unknown, or not above"},
     {"KindsDescend", [](Parts& p) { std::swap(p.table[2], p.table[3]); }, "table[2].offset_bytes: "},
-    {"Codec", [](Parts& p) { p.table[2].codec = Codec{1}; }, "table[2].codec: 1 is no Codec (section positions)"},
+    {"Codec", [](Parts& p) { p.table[2].codec = Codec{4}; }, "table[2].codec: 4 is no Codec (section positions)"},
+    {"NotCompressed", [](Parts& p) { p.table[2].codec = Codec::zstd; },
+     "table[2].codec: zstd: Unknown frame descriptor (section positions)"},
+    {"CodecOfTriangles", [](Parts& p) { p.table[2].codec = Codec::triangles; },
+     "table[2].codec: triangles is not for such records (section positions)"},
+    {"CodecOfWords", [](Parts& p) { p.table[1].codec = Codec::columns; },
+     "table[1].codec: columns is not for such records (section strings)"},
+    {"DecodedSize",
+     [](Parts& p) {
+       p.table[2].codec = Codec::columns;
+       p.table[2].count = std::uint64_t{1} << 40;
+     },
+     "table[2].count: 1099511627776 records of 12 bytes are too many for the stored 84 (section positions)"},
     {"Reserved", [](Parts& p) { p.table[2].reserved = 1; }, "table[2].reserved: 1 where 0 must be"},
     {"Stride", [](Parts& p) { p.table[2].stride_bytes = 16; }, "table[2].stride_bytes: 16 where 12 must be"},
     {"StrideZero", [](Parts& p) { p.table[2].stride_bytes = 0; }, "table[2].stride_bytes: 0 where 12 must be"},

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sections' codecs. A coded section is a row of zstd frames, one for each codec_chunk_bytes of its records.
+#include "pack_codec.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <stdexcept>
+
+#include "pack_columns.h"
+#include "pack_triangles.h"
+#include "parallel.h"
+
+namespace chandelier::pack {
+namespace {
+
+// Levels of zstd. Records are few and read by many, so they get the highest one that needs no special memory; image
+// data and text are many and gain little. Layouts are chosen on a sample with a level that ranks them alike.
+constexpr int record_level = 19, byte_level = 9, trial_level = 9;
+constexpr std::size_t sample_bytes = std::size_t{1} << 20;
+
+constexpr std::size_t word = 4;
+
+using Bytes = std::span<const std::byte>;
+
+template <typename T, std::size_t (*release)(T*)>
+struct Release {
+  void operator()(T* context) const { release(context); }
+};
+using Compressor = std::unique_ptr<ZSTD_CCtx, Release<ZSTD_CCtx, ZSTD_freeCCtx>>;
+using Decompressor = std::unique_ptr<ZSTD_DCtx, Release<ZSTD_DCtx, ZSTD_freeDCtx>>;
+
+/// One frame that says its content's size.
+std::vector<std::byte> compress(Bytes content, int level) {
+  thread_local const Compressor context(ZSTD_createCCtx());
+  if (!context) throw std::bad_alloc();
+  std::vector<std::byte> frame(ZSTD_compressBound(content.size()));
+  const std::size_t size =
+      ZSTD_compressCCtx(context.get(), frame.data(), frame.size(), content.data(), content.size(), level);
+  if (ZSTD_isError(size)) throw std::bad_alloc();  // the only way to fail with enough space
+  frame.resize(size);
+  return frame;
+}
+
+std::size_t chunk_records(std::size_t stride) {
+  return std::max<std::size_t>(3, codec_chunk_bytes / stride / 3 * 3);  // whole triangles where records are corners
+}
+
+std::size_t chunk_count(std::size_t records, std::size_t stride) {
+  return (records + chunk_records(stride) - 1) / chunk_records(stride);
+}
+
+template <typename Byte>
+std::span<Byte> chunk_of(std::span<Byte> records, std::size_t stride, std::size_t chunk) {
+  const std::size_t bytes = chunk_records(stride) * stride, first = chunk * bytes;
+  return records.subspan(first, std::min(bytes, records.size() - first));
+}
+
+std::span<const std::uint32_t> words_of(Bytes bytes) {
+  return {reinterpret_cast<const std::uint32_t*>(bytes.data()), bytes.size() / word};
+}
+
+// ---- Encoding
+
+/// A section and one codec that it is tried with.
+struct Candidate {
+  std::size_t section;  // of section_infos
+  Codec codec;
+  Bytes records;
+  std::size_t stride;
+  Layouts layouts;
+  std::vector<std::vector<std::byte>> frames;
+};
+
+std::vector<Candidate> candidates_of(const View& view) {
+  std::vector<Candidate> all;
+  for (std::size_t i = 0; i < section_infos.size(); ++i) {
+    const Bytes records = section_bytes(view, i);
+    const std::size_t stride = section_infos[i].stride_bytes;
+    if (records.empty()) continue;
+    const auto add = [&](Codec codec) {
+      all.push_back({i, codec, records, stride, {}, {}});
+      all.back().frames.resize(chunk_count(records.size() / stride, stride));
+    };
+    const Section kind = section_infos[i].kind;
+    const bool corners = kind == Section::indices || kind == Section::voxel_indices;
+    if (corners && has_triangle_codec() && records.size() % (3 * word) == 0) add(Codec::triangles);
+    add(stride % word == 0 ? Codec::columns : Codec::zstd);
+  }
+  return all;
+}
+
+void choose(Candidate& candidate) {
+  if (candidate.codec != Codec::columns) return;
+  const std::size_t count = candidate.records.size() / candidate.stride;
+  const std::size_t sampled = std::min(count, sample_bytes / candidate.stride + 1);
+  const Bytes sample = candidate.records.subspan((count - sampled) / 2 * candidate.stride, sampled * candidate.stride);
+  candidate.layouts =
+      choose_layouts(sample, candidate.stride, [](Bytes coded) { return compress(coded, trial_level).size(); });
+}
+
+/// One above the largest corner before a chunk: the next vertex that its triangles use for the first time.
+std::uint32_t vertices_before(const Candidate& candidate, std::size_t chunk) {
+  const auto before = words_of(candidate.records.first(chunk * chunk_records(word) * word));
+  return before.empty() ? 0 : *std::ranges::max_element(before) + 1;
+}
+
+void encode_chunk(Candidate& candidate, std::size_t chunk) {
+  const Bytes records = chunk_of(candidate.records, candidate.stride, chunk);
+  std::vector<std::byte>& frame = candidate.frames[chunk];
+  if (candidate.codec == Codec::zstd) {
+    frame = compress(records, byte_level);
+  } else if (candidate.codec == Codec::columns) {
+    frame = compress(to_columns(records, candidate.stride, candidate.layouts), record_level);
+  } else {
+    frame = compress(to_triangle_code(words_of(records), vertices_before(candidate, chunk)), record_level);
+  }
+}
+
+std::size_t size_of(const Candidate& candidate) {
+  std::size_t size = 0;
+  for (const std::vector<std::byte>& frame : candidate.frames) size += frame.size();
+  return size;
+}
+
+// ---- Decoding
+
+/// Codes of one chunk may be this much longer than its records.
+std::size_t coded_bound(Codec codec, std::size_t record_bytes, std::size_t stride) {
+  if (codec == Codec::zstd) return record_bytes;
+  return codec == Codec::columns ? columns_bytes(record_bytes, stride) : triangle_code_bound(record_bytes / word);
+}
+
+std::string decode_chunk(const CodedSection& section, Bytes frame, std::span<std::byte> records) {
+  thread_local const Decompressor context(ZSTD_createDCtx());
+  if (!context) throw std::bad_alloc();
+  const unsigned long long content = ZSTD_getFrameContentSize(frame.data(), frame.size());
+  if (content > coded_bound(section.codec, records.size(), section.stride_bytes)) return "a frame of a wrong size";
+  std::vector<std::byte> coded(section.codec == Codec::zstd ? 0 : content);
+  const std::span<std::byte> target = section.codec == Codec::zstd ? records : std::span(coded);
+  if (content != target.size()) return "a frame of a wrong size";
+  const std::size_t got = ZSTD_decompressDCtx(context.get(), target.data(), target.size(), frame.data(), frame.size());
+  if (ZSTD_isError(got)) return ZSTD_getErrorName(got);
+  if (got != content) return "a frame of a wrong size";
+  if (section.codec == Codec::columns && !from_columns(coded, section.stride_bytes, records))
+    return "malformed columns";
+  if (section.codec == Codec::triangles &&
+      !from_triangle_code(coded, {reinterpret_cast<std::uint32_t*>(records.data()), records.size() / word})) {
+    return "malformed triangles";
+  }
+  return {};
+}
+
+/// One frame to decode.
+struct Task {
+  std::size_t section, chunk;
+  Bytes frame;
+};
+
+/// Appends a section's frames, one a chunk, which must fill what is stored.
+std::string find_frames(const CodedSection& section, std::size_t number, std::vector<Task>& tasks) {
+  const std::size_t chunks = chunk_count(section.records.size() / section.stride_bytes, section.stride_bytes);
+  Bytes rest = section.stored;
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+    const std::size_t size = ZSTD_findFrameCompressedSize(rest.data(), rest.size());
+    if (ZSTD_isError(size)) return ZSTD_getErrorName(size);
+    tasks.push_back({number, chunk, rest.first(size)});
+    rest = rest.subspan(size);
+  }
+  return rest.empty() ? "" : "bytes after the last frame";
+}
+
+}  // namespace
+
+std::vector<Encoded> encode_sections(const View& view) {
+  std::vector<Candidate> candidates = candidates_of(view);
+  parallel_for(candidates.size(), [&](std::size_t i) { choose(candidates[i]); });
+  std::vector<std::pair<std::size_t, std::size_t>> chunks;  // of candidates and their frames
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    for (std::size_t j = 0; j < candidates[i].frames.size(); ++j) chunks.emplace_back(i, j);
+  }
+  parallel_for(chunks.size(), [&](std::size_t i) { encode_chunk(candidates[chunks[i].first], chunks[i].second); });
+  std::vector<Encoded> best(section_infos.size());
+  for (const Candidate& candidate : candidates) {
+    Encoded& encoded = best[candidate.section];
+    const std::size_t size = size_of(candidate), raw_size = candidate.records.size();
+    const bool pays = size <= raw_size - raw_size / 20 && size >= raw_size / max_decode_ratio;
+    if (!pays || (!encoded.bytes.empty() && size >= encoded.bytes.size())) continue;
+    encoded = {candidate.codec, {}};
+    for (const auto& frame : candidate.frames) encoded.bytes.insert(encoded.bytes.end(), frame.begin(), frame.end());
+  }
+  return best;
+}
+
+std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count) {
+  if (codec == Codec::triangles && !has_triangle_codec()) {
+    return "codec: triangles needs meshoptimizer, which this build lacks; bake without --compress";
+  }
+  const bool fits = codec == Codec::zstd || (codec == Codec::columns && stride_bytes % word == 0) ||
+                    (codec == Codec::triangles && stride_bytes == word && count % 3 == 0);
+  if (!fits) return "codec: " + std::string(name_of(codec)) + " is not for such records";
+  if (count == 0 || stored_bytes == 0) return "count: " + std::to_string(count) + " records of no bytes";
+  if (count / max_decode_ratio > stored_bytes / stride_bytes + 1) {
+    return "count: " + std::to_string(count) + " records of " + std::to_string(stride_bytes) +
+           " bytes are too many for the stored " + std::to_string(stored_bytes);
+  }
+  return {};
+}
+
+std::vector<std::string> decode_sections(std::span<const CodedSection> sections) {
+  std::vector<std::string> faults(sections.size());
+  std::vector<Task> tasks;
+  for (std::size_t i = 0; i < sections.size(); ++i) faults[i] = find_frames(sections[i], i, tasks);
+  std::vector<std::string> task_faults(tasks.size());
+  parallel_for(tasks.size(), [&](std::size_t i) {
+    const CodedSection& section = sections[tasks[i].section];
+    if (!faults[tasks[i].section].empty()) return;
+    const auto records = chunk_of(section.records, section.stride_bytes, tasks[i].chunk);
+    task_faults[i] = decode_chunk(section, tasks[i].frame, records);
+  });
+  for (std::size_t i = tasks.size(); i-- > 0;) {
+    if (!task_faults[i].empty()) faults[tasks[i].section] = task_faults[i];
+  }
+  return faults;
+}
+
+}  // namespace chandelier::pack

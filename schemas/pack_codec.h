@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sections' codecs. A coded section is a row of zstd frames, one for each codec_chunk_bytes of its records.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pack_schema.h"
+
+namespace chandelier::pack {
+
+struct Encoded {
+  Codec codec = Codec::raw;
+  std::vector<std::byte> bytes;  ///< Empty for Codec::raw: what is stored are the section's own bytes.
+};
+
+/// For each section of section_infos the smallest that any codec makes of it; raw where no codec saves a twentieth.
+/// Same view, same bytes, whatever the number of threads.
+std::vector<Encoded> encode_sections(const View& view);
+
+/// One section that is stored with a codec, and where its records go.
+struct CodedSection {
+  Codec codec;
+  std::uint32_t stride_bytes;
+  std::span<const std::byte> stored;
+  std::span<std::byte> records;  ///< Its size is a multiple of the stride; aligned for the records.
+};
+
+/// What is wrong with the codec or the sizes, which are not trusted; an empty string if decoding can be tried. Records
+/// of more than max_decode_ratio times the stored bytes are refused, so a small file cannot ask for much memory.
+std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count);
+
+/// Decodes all; none is raw and all passed coded_size_fault(). Gives for each what is wrong with it or an empty string.
+std::vector<std::string> decode_sections(std::span<const CodedSection> sections);
+
+}  // namespace chandelier::pack

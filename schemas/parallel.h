@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a loop's rounds in a few threads. Not oneTBB: the portable player has only the C and C++ libraries.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace chandelier::pack {
+
+/// Calls `body(i)` once for each i below `count`, in any order and at the same time. Throws what a call threw.
+template <typename Body>
+void parallel_for(std::size_t count, const Body& body) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr thrown;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        body(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!thrown) thrown = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::jthread> threads;
+  const std::size_t wanted = std::min<std::size_t>(count, std::thread::hardware_concurrency());
+  try {
+    for (std::size_t i = 1; i < wanted; ++i) threads.emplace_back(work);
+  } catch (const std::system_error&) {  // no more threads to be had: those that there are do all
+  }
+  work();
+  threads.clear();
+  if (thrown) std::rethrow_exception(thrown);
+}
+
+}  // namespace chandelier::pack
