@@ -168,6 +168,11 @@ class Usage(BakeTest):
                           [scene, "-o", self.pack, "--batch-triangles", "0"],
                           [scene, "-o", self.pack, "--batch-triangles", "many"],
                           [scene, "-o", self.pack, "--batch-triangles", "99"],
+                          [scene, "-o", self.pack, "--voxels", "1025"],
+                          [scene, "-o", self.pack, "--voxels", "32,32"],
+                          [scene, "-o", self.pack, "--voxels", "0,1,1"],
+                          [scene, "-o", self.pack, "--voxels", "1024,1024,1024"],
+                          [scene, "-o", self.pack, "--voxel-large", "both"],
                           [scene, "-o", self.pack, "--range-threshold", "0"],
                           [scene, "-o", self.pack, "--range-threshold", "-1"],
                           [scene, "-o", self.pack, "--range-threshold", "nan"]):
