@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binned SAH (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies"): the items' centres fall into
-// equal bins along each axis, and a node is cut at the bin border where area times weight, summed over both sides, is
+// equal bins along each axis, and a node is cut at the bin border where area times items, summed over both sides, is
 // least.
 #include "bvh.h"
 
@@ -13,6 +13,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 
 namespace chandelier::baker {
@@ -24,10 +26,10 @@ using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 constexpr std::size_t kMostBins = 32;
 constexpr float kTraversalCost = 1;            // of a node, where an item costs 1
-constexpr std::size_t kMostTried = 4;          // up to here, every way to share the items out is tried
+constexpr std::size_t kMostTried = 5;          // up to here, every way to share the items out is tried
 constexpr std::size_t kBlockNodes = 16384;     // that one thread writes
 constexpr std::size_t kParallelItems = 16384;  // from here on, a node's two sides are built by two threads
-constexpr std::size_t kSamples = 16384;        // of a node with twice as many items or more, to choose its cut from
+constexpr std::size_t kSamples = 2048;         // of a node with twice as many items or more, to choose its cut from
 constexpr std::size_t kMostLeafItems = 15;     // what four bits hold
 constexpr int kSahDepth = 64;  // below, nodes are cut into halves, so that no input makes a tree of a path
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -37,9 +39,6 @@ Float4 min(Float4 a, Float4 b) {
 }
 Float4 max(Float4 a, Float4 b) {
   return a > b ? a : b;
-}
-Float4 load(const glm::vec3& v) {
-  return Float4{v.x, v.y, v.z, 0};
 }
 
 struct Box {
@@ -52,18 +51,25 @@ struct Box {
   }
   void add(const Box& other) { add(other.low, other.high); }
   float half_area() const {
-    const Float4 size = high - low;
-    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+    const Float4 size = high - low, sides = size * __builtin_shufflevector(size, size, 1, 2, 0, 3);
+    return sides[0] + sides[1] + sides[2];
   }
 };
 
+/// Two whole registers, and zero for what stands behind the components.
 Box box_of(const BvhItem& item) {
-  return {load(item.low), load(item.high)};
+  static_assert(offsetof(BvhItem, low) == 0 && offsetof(BvhItem, high) == 16);
+  const auto* bytes = reinterpret_cast<const std::byte*>(&item);
+  const Int4 three = {-1, -1, -1, 0};
+  Int4 low, high;
+  std::memcpy(&low, bytes, 16);
+  std::memcpy(&high, bytes + 16, 16);
+  return {std::bit_cast<Float4>(low & three), std::bit_cast<Float4>(high & three)};
 }
 
-/// Halves before the sum, which may be beyond a float.
-Float4 centre(const BvhItem& item) {
-  return 0.5f * load(item.low) + 0.5f * load(item.high);
+/// Twice the centre of a box: as good, where only places among others matter.
+Float4 centre(const Box& box) {
+  return box.low + box.high;
 }
 
 /// Where along each axis a centre lies, in bins.
@@ -71,7 +77,7 @@ struct Binning {
   Float4 low, scale;
   std::size_t bins;
 
-  Binning(const Box& centres, std::size_t items) : low(centres.low), bins(std::min(kMostBins, 4 + items / 8)) {
+  Binning(const Box& centres, std::size_t items) : low(centres.low), bins(std::min(kMostBins, 4 + items / 16)) {
     const Float4 size = centres.high - centres.low;
     for (int axis = 0; axis < 4; ++axis) {
       // Neither an axis without an extent nor one whose extent is beyond a float can be cut.
@@ -108,8 +114,8 @@ std::array<AxisBins, 3> fill_bins(std::span<const BvhItem> items, const Binning&
   std::array<AxisBins, 3> axes;
   for (AxisBins& bins : axes) std::fill_n(bins.begin(), binning.bins, Bin::empty());
   for (std::size_t i = 0; i < items.size(); i += stride) {
-    const Int4 at = binning.of(centre(items[i]));
     const Box box = box_of(items[i]);
+    const Int4 at = binning.of(centre(box));
     for (std::size_t axis = 0; axis < 3; ++axis) axes[axis][static_cast<std::size_t>(at[axis])].add(box, 1);
   }
   return axes;
@@ -148,19 +154,24 @@ Cut find_cut(std::span<const BvhItem> items, const Binning& binning, std::size_t
 }
 
 /// How many items, brought to the front, are on the first side of a cut; what their centres span, and the others'.
+/// Which side an item is on is as good as random, so nothing here branches on it.
 std::size_t partition(std::span<BvhItem> items, const Binning& binning, const Cut& cut, Box& left, Box& right) {
-  std::size_t begin = 0, end = items.size();
-  while (begin < end) {
-    const Float4 at = centre(items[begin]);
-    if (binning.of(at)[cut.axis] < cut.bin) {
-      left.add(at, at);
-      ++begin;
-    } else {
-      right.add(at, at);
-      std::swap(items[begin], items[--end]);
-    }
+  const Box nothing;
+  const int axis = cut.axis;
+  const float low = binning.low[axis], scale = binning.scale[axis], bin = static_cast<float>(cut.bin);
+  std::size_t count = 0;
+  for (BvhItem& item : items) {
+    const Float4 at = centre(box_of(item));
+    const bool is_left = (item.low[axis] + item.high[axis] - low) * scale < bin;
+    const Int4 left_mask = Int4{} - static_cast<std::int32_t>(is_left);
+    left.add(left_mask ? at : nothing.low, left_mask ? at : nothing.high);
+    right.add(left_mask ? nothing.low : at, left_mask ? nothing.high : at);
+    const BvhItem this_one = item;
+    item = items[count];
+    items[count] = this_one;
+    count += is_left;
   }
-  return begin;
+  return count;
 }
 
 Box centres_of(std::span<const BvhItem> items) {
@@ -168,7 +179,10 @@ Box centres_of(std::span<const BvhItem> items) {
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, items.size(), kParallelItems), Box(),
       [&](const auto& range, Box box) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) box.add(centre(items[i]), centre(items[i]));
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const Float4 at = centre(box_of(items[i]));
+          box.add(at, at);
+        }
         return box;
       },
       [](Box a, const Box& b) {
@@ -185,14 +199,15 @@ std::size_t cut(std::span<BvhItem> items, const Box& centres, int depth, Box& le
     best = find_cut(items, binning, std::max<std::size_t>(1, items.size() / kSamples));
     if (best.axis < 0 && items.size() >= 2 * kSamples) best = find_cut(items, binning, 1);
   }
-  if (best.axis >= 0) return partition(items, binning, best, left, right);
+  const std::size_t count = best.axis < 0 ? 0 : partition(items, binning, best, left, right);
+  if (count > 0 && count < items.size()) return count;
   // No plane parts the centres, or areas are beyond a float.
   if (items.size() <= kMostLeafItems) return 0;
   left = right = centres;
   return items.size() / 2;
 }
 
-/// The best of all ways to give up to four items to two children, or to one leaf.
+/// The best of all ways to give up to kMostTried items to two children, or to one leaf.
 void add_few(std::span<BvhItem> items, BvhShape& shape) {
   const unsigned all = (1u << items.size()) - 1;
   std::array<Bin, 1u << kMostTried> sets;  // by the bits of their items
