@@ -1,141 +1,217 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes with OpenImageIO, in parallel; the result does not depend on the number of threads.
+// Images in parallel; the result does not depend on the number of threads.
 #include "images.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
+#include <unordered_map>
 
 #include "../error.h"
-#include "jpeg.h"
-#include "png.h"
+#include "block_compress.h"
+#include "decode.h"
+#include "image_cache.h"
+#include "pack_checks.h"
 
 namespace chandelier::baker {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+/// Decoded texels in memory at a time, apart from an image that alone has more; each takes up to 16 bytes.
+constexpr std::uint64_t kTexelsAtOnce = std::uint64_t{32} << 20;
 
-bool starts_with(const std::vector<std::uint8_t>& bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() &&
-         std::equal(magic.begin(), magic.end(), bytes.begin(),
-                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+struct Formats {
+  pack::ImageFormat raw, blocks;
+  BlockFormat fit;
+};
+
+Formats formats_of(ImageUse use) {
+  switch (use) {
+    case ImageUse::color:
+      return {pack::ImageFormat::rgba8_srgb, pack::ImageFormat::bc1_srgb, BlockFormat::bc1};
+    case ImageUse::masked_color:
+      return {pack::ImageFormat::rgba8_srgb, pack::ImageFormat::bc3_srgb, BlockFormat::bc3};
+    case ImageUse::data:
+      return {pack::ImageFormat::rgba8_unorm, pack::ImageFormat::bc1_unorm, BlockFormat::bc1};
+    default:
+      return {pack::ImageFormat::rgba8_unorm, pack::ImageFormat::bc5_unorm, BlockFormat::bc5};
+  }
 }
 
-bool is_png(const EncodedImage& image) {
-  return starts_with(image.bytes, "\x89PNG");
-}
-bool is_jpeg(const EncodedImage& image) {
-  return starts_with(image.bytes, "\xFF\xD8\xFF");
-}
-
-/// Formats that glTF extensions bring.
-std::string name_of_format(const EncodedImage& image) {
-  if (starts_with(image.bytes, "\xABKTX 20")) return " but KTX2";
-  if (starts_with(image.bytes, "RIFF")) return " but WebP";
-  if (starts_with(image.bytes, "DDS ")) return " but DDS";
-  return "";
-}
-
-/// RGBA from 1 to 4 channels; one or two are grey, or grey and alpha.
-std::vector<std::uint8_t> to_rgba(std::vector<std::uint8_t>&& in, std::size_t texels, std::size_t channels) {
-  if (channels == 4) return std::move(in);
-  std::vector<std::uint8_t> out(4 * texels, 255);
-  for (std::size_t i = 0; i < texels; ++i) {
-    const std::uint8_t* from = in.data() + i * channels;
-    for (std::size_t c = 0; c < 3; ++c) out[4 * i + c] = channels < 3 ? from[0] : from[c];
-    if (channels == 2) out[4 * i + 3] = from[1];
+/// In blocks where asked for and where they are smaller: a texel alone is not.
+StoredTexels stored(std::vector<Texels>&& levels, ImageUse use, TextureMode mode) {
+  const Formats formats = formats_of(use);
+  StoredTexels out;
+  out.record.width = levels[0].width;
+  out.record.height = levels[0].height;
+  out.record.level_count = static_cast<std::uint32_t>(levels.size());
+  out.record.format = formats.raw;
+  pack::Image in_blocks = out.record;
+  in_blocks.format = formats.blocks;
+  const bool compress = mode == TextureMode::bc && image_bytes(in_blocks) < image_bytes(out.record);
+  if (compress) out.record.format = formats.blocks;
+  out.record.size_bytes = image_bytes(out.record);
+  out.bytes.reserve(out.record.size_bytes);
+  for (Texels& level : levels) {
+    out.texels += level.rgba.size() / 4;
+    if (compress) {
+      const Blocks blocks = compress_blocks(level, formats.fit);
+      out.bytes.insert(out.bytes.end(), blocks.bytes.begin(), blocks.bytes.end());
+      out.squared_error += blocks.squared_error;
+      out.values += blocks.values;
+    } else {
+      out.bytes.insert(out.bytes.end(), level.rgba.begin(), level.rgba.end());
+    }
+    level.rgba = {};
   }
   return out;
 }
 
-struct Made {
-  Texels size;  // without texels
-  std::vector<std::uint8_t> bytes;
-  std::string error;
+bool is_opaque(const Texels& texels) {
+  for (std::size_t i = 3; i < texels.rgba.size(); i += 4) {
+    if (texels.rgba[i] != 255) return false;
+  }
+  return true;
+}
+
+/// The requests of images that are the same, byte by byte.
+struct Job {
+  std::uint32_t image;                // the first of them
+  std::vector<std::size_t> requests;  // their numbers
 };
 
-Made make_image(const EncodedImage& image, ImageUse use) {
-  Made made;
+std::vector<Job> jobs_of(const std::vector<ImageRequest>& requests, const Scene& scene) {
+  std::vector<Job> jobs;
+  std::unordered_map<std::string_view, std::size_t> job_of;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const std::vector<std::uint8_t>& bytes = scene.images[requests[i].image].bytes;
+    const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const auto [it, added] = job_of.try_emplace(content, jobs.size());
+    if (added) jobs.push_back({requests[i].image, {}});
+    jobs[it->second].requests.push_back(i);
+  }
+  return jobs;
+}
+
+/// What a request asks of its image: those that ask the same share the answer.
+struct Wish {
+  ImageUse use;
+  float alpha_cutoff;
+  bool operator==(const Wish&) const = default;
+};
+
+MadeImages make_images_of(const Job& job, const Scene& scene, const std::vector<ImageRequest>& requests,
+                          const ImageSettings& settings) {
+  MadeImages made;
   try {
-    Texels texels = decode_image(image);
-    made.size = {texels.width, texels.height, {}};
-    made.bytes = mip_chain(std::move(texels), use);
+    const Texels texels = decode_image(scene.images[job.image]);
+    const bool opaque = is_opaque(texels);
+    std::vector<Wish> wishes;
+    for (const std::size_t number : job.requests) {
+      const ImageRequest& request = requests[number];
+      const bool masked = request.use == ImageUse::masked_color;
+      const Wish wish = masked && opaque ? Wish{ImageUse::color, 0} : Wish{request.use, request.alpha_cutoff};
+      const auto known = std::find(wishes.begin(), wishes.end(), wish);
+      made.of_request.push_back(static_cast<std::size_t>(known - wishes.begin()));
+      if (known != wishes.end()) continue;
+      wishes.push_back(wish);
+      made.images.push_back(stored(mip_chain(Texels(texels), wish.use, wish.alpha_cutoff, settings.max_size), wish.use,
+                                   settings.textures));
+    }
   } catch (const Error& error) {
     made.error = error.what();  // kept, so that the first in order is told, not the first in time
   }
   return made;
 }
 
+/// From the cache where it has them, else made and kept.
+MadeImages find_or_make_images(const Job& job, const Scene& scene, const std::vector<ImageRequest>& requests,
+                               const ImageSettings& settings, Cache& cache) {
+  if (!cache.is_on()) return make_images_of(job, scene, requests, settings);
+  std::vector<ImageRequest> asked;
+  for (const std::size_t number : job.requests) asked.push_back(requests[number]);
+  const std::string entry = image_entry(scene.images[job.image], asked, settings);
+  MadeImages made;
+  if (load_images(cache, entry, asked.size(), made)) return made;
+  made = make_images_of(job, scene, requests, settings);
+  if (made.error.empty()) store_images(cache, entry, made);
+  return made;
+}
+
+/// Side by side, as many as memory allows. Takes the bytes out of the scene.
+std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<ImageRequest>& requests, Scene& scene,
+                            const ImageSettings& settings, const Progress& progress, Cache& cache) {
+  std::vector<MadeImages> made(jobs.size());
+  for (std::size_t first = 0; first < jobs.size();) {
+    progress.next("making images, " + std::to_string(first) + " of " + std::to_string(jobs.size()) + " done");
+    std::size_t end = first;
+    for (std::uint64_t texels = 0; end < jobs.size() && (end == first || texels < kTexelsAtOnce); ++end) {
+      texels += claimed_texels(scene.images[jobs[end].image]);
+    }
+    tbb::parallel_for(first, end,
+                      [&](std::size_t i) { made[i] = find_or_make_images(jobs[i], scene, requests, settings, cache); });
+    for (; first < end; ++first) {
+      if (!made[first].error.empty()) throw Error(made[first].error);
+      scene.images[jobs[first].image].bytes = {};
+    }
+  }
+  return made;
+}
+
+std::uint32_t add_image(StoredTexels&& image, const std::string& name, Strings& strings, pack::Contents& pack) {
+  image.record.first_byte = pack.image_data.size();
+  image.record.name = strings.add(name);
+  pack.images.push_back(image.record);
+  const auto* data = reinterpret_cast<const std::byte*>(image.bytes.data());
+  pack.image_data.insert(pack.image_data.end(), data, data + image.bytes.size());
+  pack.image_data.resize((pack.image_data.size() + 15) / 16 * 16);
+  image.bytes = {};
+  return fit_u32(pack.images.size() - 1, "images");
+}
+
+void tell(const std::vector<MadeImages>& made, std::size_t requests, PassReport& report) {
+  std::uint64_t images = 0, texels = 0, squared_error = 0, values = 0;
+  for (const MadeImages& each : made) {
+    images += each.images.size();
+    for (const StoredTexels& image : each.images) {
+      texels += image.texels;
+      squared_error += image.squared_error;
+      values += image.values;
+    }
+  }
+  report.count("images", static_cast<double>(images));
+  report.count("decoded", static_cast<double>(made.size()));
+  report.count("shared", static_cast<double>(requests - made.size()));  // uses that needed no decoding of their own
+  report.count("texels", static_cast<double>(texels));
+  if (squared_error == 0) return;
+  report.count("psnr_db",
+               10 * std::log10(255.0 * 255.0 * static_cast<double>(values) / static_cast<double>(squared_error)));
+}
+
 }  // namespace
 
-void check_image_size(std::int64_t width, std::int64_t height, const std::string& where) {
-  if (width >= 1 && height >= 1 && width <= pack::max_image_size && height <= pack::max_image_size) return;
-  fail(where, "size is out of range, 1 to " + std::to_string(pack::max_image_size) + " (" + std::to_string(width) +
-                  "x" + std::to_string(height) + ")");
-}
-
-Texels decode_image(const EncodedImage& image) {
-  if (!is_png(image) && !is_jpeg(image)) {
-    const std::string size = std::to_string(image.bytes.size());
-    fail(image.where, "is neither PNG nor JPEG" + name_of_format(image) + " (" + size + " bytes)");
-  }
-  if (is_jpeg(image)) check_jpeg(image.bytes, image.where);
-  const std::vector<std::uint8_t> png = is_png(image) ? essential_png(image.bytes, image.where) : Bytes();
-  const std::vector<std::uint8_t>& bytes = is_png(image) ? png : image.bytes;
-  OIIO::ImageSpec hints;
-  hints.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not premultiplied
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  void* proxy = &memory;  // among the hints: the JPEG reader forgets open()'s own argument
-  hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(is_png(image) ? "image.png" : "image.jpg", &hints, &memory);
-  if (!input) fail(image.where, "cannot be decoded: " + shortened(OIIO::geterror(), 200));
-  input->threads(1);  // images are decoded side by side already
-  const OIIO::ImageSpec& spec = input->spec();
-  check_image_size(spec.width, spec.height, image.where);
-  if (spec.nchannels < 1 || spec.nchannels > 4) {
-    fail(image.where, "cannot be decoded: not 1 to 4 channels (" + std::to_string(spec.nchannels) + ")");
-  }
-  const std::size_t texels = std::size_t(spec.width) * std::size_t(spec.height);
-  const auto channels = static_cast<std::size_t>(spec.nchannels);
-  std::vector<std::uint8_t> values(texels * channels);
-  // libjpeg goes on with grey after damage, and only warns: the reader keeps its first warning as its error.
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, values.data()) || input->has_error()) {
-    fail(image.where, "cannot be decoded: " + shortened(input->geterror(), 200));
-  }
-  return {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
-          to_rgba(std::move(values), texels, channels)};
-}
-
-void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const Progress& progress, Strings& strings,
-                 pack::Contents& pack) {
-  if (!requests.empty()) progress.next("decoding " + std::to_string(requests.size()) + " images");
-  std::vector<Made> made(requests.size());
-  tbb::parallel_for(std::size_t{0}, requests.size(),
-                    [&](std::size_t i) { made[i] = make_image(scene.images[requests[i].image], requests[i].use); });
+void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const ImageSettings& settings,
+                 const Progress& progress, Cache& cache, PassReport& report, Strings& strings, pack::Contents& pack) {
+  const std::vector<Job> jobs = jobs_of(requests, scene);
+  std::vector<MadeImages> made = run(jobs, requests, scene, settings, progress, cache);
+  tell(made, requests.size(), report);
   std::size_t bytes = 0;
-  for (const Made& each : made) {
-    if (!each.error.empty()) throw Error(each.error);
-    bytes += (each.bytes.size() + 15) / 16 * 16;
+  for (const MadeImages& each : made) {
+    for (const StoredTexels& image : each.images) bytes += (image.bytes.size() + 15) / 16 * 16;
   }
   pack.image_data.reserve(bytes);
-  for (std::size_t i = 0; i < made.size(); ++i) {
-    pack::Image image;
-    image.first_byte = pack.image_data.size();
-    image.size_bytes = made[i].bytes.size();
-    image.width = made[i].size.width;
-    image.height = made[i].size.height;
-    image.level_count = mip_level_count(image.width, image.height);
-    image.format = requests[i].use == ImageUse::color ? pack::ImageFormat::rgba8_srgb : pack::ImageFormat::rgba8_unorm;
-    image.name = strings.add(scene.images[requests[i].image].name);
-    pack.images.push_back(image);
-    const auto* data = reinterpret_cast<const std::byte*>(made[i].bytes.data());
-    pack.image_data.insert(pack.image_data.end(), data, data + made[i].bytes.size());
-    pack.image_data.resize((pack.image_data.size() + 15) / 16 * 16);
-    made[i].bytes = {};
+  std::vector<std::uint32_t> image_of_request(requests.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    std::vector<std::uint32_t> numbers;
+    for (StoredTexels& image : made[i].images) {
+      numbers.push_back(add_image(std::move(image), scene.images[jobs[i].image].name, strings, pack));
+    }
+    for (std::size_t r = 0; r < jobs[i].requests.size(); ++r) {
+      image_of_request[jobs[i].requests[r]] = numbers[made[i].of_request[r]];
+    }
   }
+  for (pack::Texture& texture : pack.textures) texture.image = image_of_request[texture.image];
   for (EncodedImage& image : scene.images) image.bytes = {};
 }
 

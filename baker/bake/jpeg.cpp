@@ -14,9 +14,18 @@ bool stands_alone(std::uint8_t marker) {
   return (marker >= kFirstRestart && marker <= kStartOfImage) || marker == kTemporary;
 }
 
-}  // namespace
+/// Table B.1: SOF0 to SOF15, among which stand three others.
+bool starts_frame(std::uint8_t marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
 
-void check_jpeg(const std::vector<std::uint8_t>& bytes, const std::string& where) {
+std::size_t u16_at(const std::uint8_t* bytes) {
+  return std::size_t{bytes[0]} << 8 | bytes[1];
+}
+
+/// Where the first marker with a length or the end's stands for which `wanted` holds; the size of `bytes` if none does.
+template <typename Wanted>
+std::size_t find_marker(const std::vector<std::uint8_t>& bytes, Wanted wanted) {
   // Between segments lie the scans' data, in which FF is followed by 00, or by more FF before a marker.
   for (std::size_t at = 0; at + 1 < bytes.size();) {
     const std::uint8_t marker = bytes[at + 1];
@@ -24,15 +33,28 @@ void check_jpeg(const std::vector<std::uint8_t>& bytes, const std::string& where
       ++at;
     } else if (marker == 0 || stands_alone(marker)) {
       at += 2;
-    } else if (marker == kEndOfImage) {
-      return;
-    } else if (at + 3 < bytes.size()) {
-      at += 2 + (std::size_t{bytes[at + 2]} << 8 | bytes[at + 3]);
+    } else if (wanted(marker)) {
+      return at;
+    } else if (marker != kEndOfImage && at + 3 < bytes.size()) {
+      at += 2 + u16_at(&bytes[at + 2]);
     } else {
       break;
     }
   }
+  return bytes.size();
+}
+
+}  // namespace
+
+void check_jpeg(const std::vector<std::uint8_t>& bytes, const std::string& where) {
+  if (find_marker(bytes, [](std::uint8_t marker) { return marker == kEndOfImage; }) < bytes.size()) return;
   fail(where, "JPEG is cut short (" + std::to_string(bytes.size()) + " bytes)");
+}
+
+std::uint64_t jpeg_texels(const std::vector<std::uint8_t>& bytes) {
+  const std::size_t at = find_marker(bytes, starts_frame);
+  if (bytes.size() - at < 9) return 0;
+  return std::uint64_t{u16_at(&bytes[at + 5])} * u16_at(&bytes[at + 7]);  // marker, length, precision, height, width
 }
 
 }  // namespace chandelier::baker

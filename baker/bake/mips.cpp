@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mip levels by box filter; odd sizes weigh three texels, so that nothing shifts or is left out.
+#include "mips.h"
+
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <glm/glm.hpp>
 
-#include "images.h"
+#include "alpha_coverage.h"
 
 namespace chandelier::baker {
 namespace {
@@ -44,6 +49,7 @@ const SrgbTable& srgb() {
   return table;
 }
 
+/// What filtering keeps between levels: RGB linear, alpha plain.
 struct Level {
   std::uint32_t width, height;
   std::vector<glm::vec4> texels;
@@ -63,53 +69,132 @@ Taps taps(std::uint32_t size, std::uint32_t x) {
   return {3, {2 * x, 2 * x + 1, 2 * x + 2}, {(half - fx) / whole, half / whole, (fx + 1) / whole}};
 }
 
-/// `texel(x, y)` of a level of `width` by `height`.
+/// Runs `work(first, end)` over the rows of an image, side by side.
+template <typename Work>
+void over_rows(std::uint32_t width, std::uint32_t height, Work work) {
+  const std::uint32_t grain = std::max(1u, 32768u / width);  // rows worth a task
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, height, grain),
+                    [&](const auto& rows) { work(rows.begin(), rows.end()); });
+}
+
+/// The mean of the texels under `columns` and `rows`, by alpha where that is tested: what is not seen has no colour.
 template <typename Texel>
-Level halve(std::uint32_t width, std::uint32_t height, Texel texel) {
-  Level to{std::max(1u, width / 2), std::max(1u, height / 2), {}};
-  to.texels.resize(std::size_t{to.width} * to.height);
-  for (std::uint32_t y = 0; y < to.height; ++y) {
-    const Taps rows = taps(height, y);
-    for (std::uint32_t x = 0; x < to.width; ++x) {
-      const Taps columns = taps(width, x);
-      glm::vec4 sum(0);
-      for (int r = 0; r < rows.count; ++r) {
-        for (int c = 0; c < columns.count; ++c) {
-          sum += texel(columns.at[c], rows.at[r]) * (rows.weight[r] * columns.weight[c]);
-        }
-      }
-      to.texels[std::size_t{y} * to.width + x] = sum;
+glm::vec4 mean(const Taps& columns, const Taps& rows, bool by_alpha, Texel texel) {
+  glm::vec4 sum(0);
+  glm::vec3 seen(0);
+  for (int r = 0; r < rows.count; ++r) {
+    for (int c = 0; c < columns.count; ++c) {
+      const glm::vec4 value = texel(columns.at[c], rows.at[r]);
+      const float weight = rows.weight[r] * columns.weight[c];
+      sum += value * weight;
+      if (by_alpha) seen += glm::vec3(value) * (value.a * weight);
     }
   }
+  return by_alpha && sum.a > 0 ? glm::vec4(seen / sum.a, sum.a) : sum;
+}
+
+/// `texel(x, y)` of a level of `width` by `height`.
+template <typename Texel>
+Level halve(std::uint32_t width, std::uint32_t height, bool by_alpha, Texel texel) {
+  Level to{std::max(1u, width / 2), std::max(1u, height / 2), {}};
+  to.texels.resize(std::size_t{to.width} * to.height);
+  over_rows(to.width, to.height, [&](std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t y = first; y < end; ++y) {
+      const Taps rows = taps(height, y);
+      for (std::uint32_t x = 0; x < to.width; ++x) {
+        to.texels[std::size_t{y} * to.width + x] = mean(taps(width, x), rows, by_alpha, texel);
+      }
+    }
+  });
   return to;
 }
 
+bool is_srgb(ImageUse use) {
+  return use == ImageUse::color || use == ImageUse::masked_color;
+}
+
 /// Level 1 from the bytes of level 0: floats of level 0 would take four times its memory.
-Level halve_bytes(std::uint32_t width, std::uint32_t height, const std::uint8_t* rgba, ImageUse use) {
+Level halve(const Texels& top, ImageUse use) {
   std::array<float, 256> plain;
   for (int i = 0; i < 256; ++i) plain[i] = static_cast<float>(i) / 255.0f;
-  const std::array<float, 256>& curve = use == ImageUse::color ? srgb().linear : plain;
-  return halve(width, height, [&](std::uint32_t x, std::uint32_t y) {
-    const std::uint8_t* in = rgba + 4 * (std::size_t{y} * width + x);
+  const std::array<float, 256>& curve = is_srgb(use) ? srgb().linear : plain;
+  return halve(top.width, top.height, use == ImageUse::masked_color, [&](std::uint32_t x, std::uint32_t y) {
+    const std::uint8_t* in = top.rgba.data() + 4 * (std::size_t{y} * top.width + x);
     return glm::vec4(curve[in[0]], curve[in[1]], curve[in[2]], plain[in[3]]);
   });
 }
 
+Level halve(const Level& from, ImageUse use) {
+  return halve(from.width, from.height, use == ImageUse::masked_color,
+               [&](std::uint32_t x, std::uint32_t y) { return from.texels[std::size_t{y} * from.width + x]; });
+}
+
 glm::vec4 unit_normal(const glm::vec4& texel) {
-  const glm::vec3 normal = glm::vec3(texel) * 2.0f - 1.0f;
+  glm::vec3 normal = glm::vec3(texel) * 2.0f - 1.0f;
+  normal.z = std::max(normal.z, 0.0f);  // readers take z from x and y
   const float length = glm::length(normal);
   if (!(length > 1e-6f)) return {0.5f, 0.5f, 1.0f, texel.a};
   return glm::vec4(normal / length * 0.5f + 0.5f, texel.a);
 }
 
-void append(const Level& level, ImageUse use, std::vector<std::uint8_t>& out) {
-  for (const glm::vec4& stored : level.texels) {
-    const glm::vec4 texel = use == ImageUse::normal ? unit_normal(stored) : stored;
-    for (int c = 0; c < 4; ++c) {
-      const bool curved = use == ImageUse::color && c < 3;
-      out.push_back(curved ? srgb().code(texel[c])
-                           : static_cast<std::uint8_t>(std::clamp(texel[c], 0.0f, 1.0f) * 255.0f + 0.5f));
+std::uint8_t plain_code(float value) {
+  return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
+
+void store(const glm::vec4& stored, ImageUse use, std::uint8_t* out) {
+  const glm::vec4 texel = use == ImageUse::normal ? unit_normal(stored) : stored;
+  for (int c = 0; c < 3; ++c) out[c] = is_srgb(use) ? srgb().code(texel[c]) : plain_code(texel[c]);
+  out[3] = plain_code(texel.a);
+}
+
+Texels stored(const Level& level, ImageUse use) {
+  Texels out{level.width, level.height, std::vector<std::uint8_t>(4 * level.texels.size())};
+  over_rows(level.width, level.height, [&](std::uint32_t first, std::uint32_t end) {
+    for (std::size_t i = std::size_t{first} * level.width; i < std::size_t{end} * level.width; ++i) {
+      store(level.texels[i], use, &out.rgba[4 * i]);
     }
+  });
+  return out;
+}
+
+void normalize(Texels& top) {
+  for (std::size_t i = 0; i < top.rgba.size(); i += 4) {
+    const glm::vec4 texel(top.rgba[i], top.rgba[i + 1], top.rgba[i + 2], top.rgba[i + 3]);
+    store(texel / 255.0f, ImageUse::normal, &top.rgba[i]);
+  }
+}
+
+/// Gives texels that are not seen the colour of the level below, which comes from what is seen around them: filters
+/// mix it in at the edges.
+void fill_unseen(Texels& top, std::vector<Level>& levels) {
+  const auto below = [](const Level& level, std::uint32_t x, std::uint32_t y) {
+    const std::size_t row = std::min(y / 2, level.height - 1);
+    return glm::vec3(level.texels[row * level.width + std::min(x / 2, level.width - 1)]);
+  };
+  for (std::size_t i = levels.size(); i-- > 1;) {
+    Level& level = levels[i - 1];
+    for (std::uint32_t y = 0; y < level.height; ++y) {
+      for (std::uint32_t x = 0; x < level.width; ++x) {
+        glm::vec4& texel = level.texels[std::size_t{y} * level.width + x];
+        if (texel.a == 0) texel = glm::vec4(below(levels[i], x, y), 0);
+      }
+    }
+  }
+  for (std::uint32_t y = 0; y < top.height; ++y) {
+    for (std::uint32_t x = 0; x < top.width; ++x) {
+      std::uint8_t* texel = &top.rgba[4 * (std::size_t{y} * top.width + x)];
+      if (texel[3] == 0) store(glm::vec4(below(levels[0], x, y), 0), ImageUse::masked_color, texel);
+    }
+  }
+}
+
+void keep_coverage(const std::vector<Level>& levels, float cutoff, double coverage, std::vector<Texels>& out) {
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    std::vector<float> alphas;
+    alphas.reserve(levels[i].texels.size());
+    for (const glm::vec4& texel : levels[i].texels) alphas.push_back(texel.a);
+    const std::vector<std::uint8_t> codes = with_coverage(alphas, cutoff, coverage);
+    for (std::size_t t = 0; t < codes.size(); ++t) out[i + 1].rgba[4 * t + 3] = codes[t];
   }
 }
 
@@ -119,18 +204,29 @@ std::uint32_t mip_level_count(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
 }
 
-std::vector<std::uint8_t> mip_chain(Texels&& top, ImageUse use) {
-  std::vector<std::uint8_t> out = std::move(top.rgba);
-  const std::uint32_t levels = mip_level_count(top.width, top.height);
-  if (levels == 1) return out;
-  Level level = halve_bytes(top.width, top.height, out.data(), use);
-  out.reserve(out.size() * 3 / 2);
-  append(level, use, out);
-  for (std::uint32_t i = 2; i < levels; ++i) {
-    level = halve(level.width, level.height,
-                  [&](std::uint32_t x, std::uint32_t y) { return level.texels[std::size_t{y} * level.width + x]; });
-    append(level, use, out);
+std::vector<Texels> mip_chain(Texels&& top, ImageUse use, float alpha_cutoff, std::uint32_t max_size) {
+  if (use == ImageUse::normal) normalize(top);
+  std::vector<Texels> out;
+  out.push_back(std::move(top));
+  std::vector<Level> levels;  // from the second on
+  const bool masked = use == ImageUse::masked_color;
+  for (std::uint32_t i = 1; i < mip_level_count(out[0].width, out[0].height); ++i) {
+    Level next = i == 1 ? halve(out[0], use) : halve(levels.back(), use);
+    if (!masked) {
+      out.push_back(stored(next, use));
+      levels.clear();
+    }
+    levels.push_back(std::move(next));
   }
+  if (masked && !levels.empty()) {
+    fill_unseen(out[0], levels);
+    for (const Level& level : levels) out.push_back(stored(level, use));
+    if (alpha_cutoff > 0) keep_coverage(levels, alpha_cutoff, alpha_coverage(out[0].rgba, alpha_cutoff), out);
+  }
+  const auto fits = [&](const Texels& level) {
+    return max_size == 0 || std::max(level.width, level.height) <= max_size;
+  };
+  out.erase(out.begin(), std::find_if(out.begin(), out.end(), fits));
   return out;
 }
 

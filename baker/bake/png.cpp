@@ -8,7 +8,7 @@
 #include <new>
 
 #include "../error.h"
-#include "images.h"
+#include "decode.h"
 
 namespace chandelier::baker {
 namespace {
@@ -200,6 +200,11 @@ std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, 
   for (const Chunk& chunk : data) append(chunk, out);
   append(chunks.back(), out);
   return out;
+}
+
+std::uint64_t png_texels(const std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t kWidth = kSignatureBytes + 8, kHeight = kWidth + 4;  // IHDR is the first chunk
+  return bytes.size() < kHeight + 4 ? 0 : std::uint64_t{u32_at(&bytes[kWidth])} * u32_at(&bytes[kHeight]);
 }
 
 }  // namespace chandelier::baker

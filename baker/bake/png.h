@@ -12,4 +12,7 @@ namespace chandelier::baker {
 /// warnings about them. Throws Error, beginning with `where`, where the file is cut or a checksum is wrong.
 std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where);
 
+/// Width times height as its header claims, unchecked; 0 where there is no header.
+std::uint64_t png_texels(const std::vector<std::uint8_t>& bytes);
+
 }  // namespace chandelier::baker

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials and textures. An image that serves as colour here and as data there is stored once as each.
+// Materials and textures. An image that serves as colour here and as data there is asked for once as each.
 #include "textures.h"
 
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "../error.h"
@@ -23,13 +24,14 @@ class Textures {
  public:
   Textures(const Scene& scene, pack::Contents& pack) : scene_(scene), pack_(pack) {}
 
-  std::uint32_t use(std::uint32_t texture, ImageUse use) {
-    const auto [it, added] = textures_.try_emplace({texture, use}, 0);
+  std::uint32_t use(const TextureUse& from, ImageUse use, float alpha_cutoff) {
+    const Texture& in = scene_.textures[from.texture];
+    const std::uint32_t image = request({in.image, use, alpha_cutoff});
+    const auto [it, added] = textures_.try_emplace({from.texture, image, from.uv_transform}, 0);
     if (added) {
-      const Texture& in = scene_.textures[texture];
       it->second = fit_u32(pack_.textures.size(), "textures");
-      pack_.textures.push_back({.uv_transform = {{{1, 0, 0}, {0, 1, 0}}},
-                                .image = request(in.image, use),
+      pack_.textures.push_back({.uv_transform = from.uv_transform,
+                                .image = image,
                                 .wrap_u = record_of(in.wrap_u),
                                 .wrap_v = record_of(in.wrap_v),
                                 .mag_filter = record_of(in.mag_filter),
@@ -41,21 +43,61 @@ class Textures {
   std::vector<ImageRequest> requests;
 
  private:
-  std::uint32_t request(std::uint32_t image, ImageUse use) {
-    const auto [it, added] = images_.try_emplace({image, use}, 0);
+  struct Key {
+    std::uint32_t texture, request;
+    UvTransform uv_transform;
+
+    bool operator<(const Key& other) const {
+      const auto numbers = [](const Key& key) {
+        const glm::vec3 &u = key.uv_transform[0], &v = key.uv_transform[1];
+        return std::tuple(key.texture, key.request, u.x, u.y, u.z, v.x, v.y, v.z);
+      };
+      return numbers(*this) < numbers(other);
+    }
+  };
+
+  std::uint32_t request(const ImageRequest& wanted) {
+    const auto [it, added] = requests_.try_emplace(wanted, 0);
     if (added) {
       it->second = fit_u32(requests.size(), "images");
-      requests.push_back({image, use});
+      requests.push_back(wanted);
     }
     return it->second;
   }
 
   const Scene& scene_;
   pack::Contents& pack_;
-  std::map<std::pair<std::uint32_t, ImageUse>, std::uint32_t> textures_, images_;
+  std::map<Key, std::uint32_t> textures_;
+  std::map<ImageRequest, std::uint32_t> requests_;
 };
 
-pack::Material record_of(const Material& material, Textures& textures, Strings& strings) {
+/// The least alpha of the base colour's texture that is seen; 0 where the texture does not decide it. Vertex colours
+/// are left out of account.
+float texture_cutoff(const Material& material) {
+  if (!material.masked || !(material.base_color_factor.a > 0)) return 0;
+  const float cutoff = material.alpha_cutoff / material.base_color_factor.a;
+  return cutoff > 0 && cutoff <= 1 ? cutoff : 0;
+}
+
+void add_maps(const Material& material, Textures& textures, pack::Material& out) {
+  const float cutoff = texture_cutoff(material);
+  const struct {
+    const TextureUse& from;
+    std::uint32_t& to;
+    ImageUse use;
+  } maps[] = {{material.base_color, out.base_color_texture, material.masked ? ImageUse::masked_color : ImageUse::color},
+              {material.metallic_roughness, out.metallic_roughness_texture, ImageUse::data},
+              {material.normal, out.normal_texture, ImageUse::normal},
+              {material.occlusion, out.occlusion_texture, ImageUse::data},
+              {material.emissive_map, out.emissive_texture, ImageUse::color}};
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    if (maps[i].from.texture == kNone) continue;
+    maps[i].to = textures.use(maps[i].from, maps[i].use, i == 0 ? cutoff : 0);
+    out.uv1_mask |= std::uint32_t{maps[i].from.uv1} << i;
+  }
+}
+
+pack::Material record_of(const Material& material, Strings& strings) {
   pack::Material out;
   out.base_color_factor = material.base_color_factor;
   out.emissive = material.emissive;
@@ -64,32 +106,27 @@ pack::Material record_of(const Material& material, Textures& textures, Strings& 
   out.alpha_cutoff = material.alpha_cutoff;
   out.normal_scale = material.normal_scale;
   out.occlusion_strength = material.occlusion_strength;
-  const struct {
-    const TextureUse& from;
-    std::uint32_t& to;
-    ImageUse use;
-  } maps[] = {{material.base_color, out.base_color_texture, ImageUse::color},
-              {material.metallic_roughness, out.metallic_roughness_texture, ImageUse::data},
-              {material.normal, out.normal_texture, ImageUse::normal},
-              {material.occlusion, out.occlusion_texture, ImageUse::data},
-              {material.emissive_map, out.emissive_texture, ImageUse::color}};
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    if (maps[i].from.texture == kNone) continue;
-    maps[i].to = textures.use(maps[i].from.texture, maps[i].use);
-    out.uv1_mask |= std::uint32_t{maps[i].from.uv1} << i;
-  }
   out.alpha_mode = material.masked ? pack::AlphaMode::mask : pack::AlphaMode::opaque;
   out.double_sided = material.double_sided;
+  out.unlit = material.unlit;
   out.name = strings.add(material.name);
   return out;
 }
 
 }  // namespace
 
-std::vector<ImageRequest> make_materials(const Scene& scene, Strings& strings, pack::Contents& pack) {
-  Textures textures(scene, pack);
-  for (const Material& material : scene.materials) pack.materials.push_back(record_of(material, textures, strings));
-  return std::move(textures.requests);
+std::vector<ImageRequest> make_materials(const Scene& scene, bool textures, Strings& strings, pack::Contents& pack) {
+  Textures used(scene, pack);
+  for (const Material& material : scene.materials) {
+    pack::Material out = record_of(material, strings);
+    if (textures) {
+      add_maps(material, used, out);
+    } else if (material.emissive_map.texture != kNone) {
+      out.emissive = glm::vec3(0);
+    }
+    pack.materials.push_back(out);
+  }
+  return std::move(used.requests);
 }
 
 }  // namespace chandelier::baker

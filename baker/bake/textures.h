@@ -9,7 +9,8 @@
 
 namespace chandelier::baker {
 
-/// Fills materials and textures. Returns the images that the textures' numbers count, for make_images.
-std::vector<ImageRequest> make_materials(const Scene& scene, Strings& strings, pack::Contents& pack);
+/// Fills materials and, with `textures`, textures, whose image is the number of a request that is returned, for
+/// make_images. Without, what a texture colours has its factor alone, and what a texture lets glow does not.
+std::vector<ImageRequest> make_materials(const Scene& scene, bool textures, Strings& strings, pack::Contents& pack);
 
 }  // namespace chandelier::baker

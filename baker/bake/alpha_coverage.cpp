@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Alpha coverage by order statistics: the scale is what brings the right number of texels over the cutoff.
+#include "alpha_coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace chandelier::baker {
+namespace {
+
+/// The least 8-bit alpha that a shader's test lets through; 256 where none is.
+int first_passing_code(float cutoff) {
+  int code = 0;
+  while (code < 256 && static_cast<float>(code) / 255.0f < cutoff) ++code;
+  return code;
+}
+
+/// What separates the texels that shall pass from the others.
+struct Threshold {
+  float passing;  // the least that passes; infinity: none
+  float failing;  // the greatest that does not; -infinity: all pass
+};
+
+Threshold find_threshold(std::vector<float> alphas, std::size_t count) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto nth = alphas.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(count, 1) - 1);
+  std::nth_element(alphas.begin(), nth, alphas.end(), std::greater<>());
+  const float value = *nth;
+  std::size_t above = 0, equal = 0;
+  float next_above = kInfinity, next_below = -kInfinity;
+  for (const float alpha : alphas) {
+    if (alpha > value) ++above, next_above = std::min(next_above, alpha);
+    if (alpha < value) next_below = std::max(next_below, alpha);
+    equal += alpha == value;
+  }
+  // Those that equal the threshold pass or fail together.
+  const bool pass = count > 0 && above + equal - count <= count - above;
+  return pass ? Threshold{value, next_below} : Threshold{next_above, value};
+}
+
+}  // namespace
+
+double alpha_coverage(const std::vector<std::uint8_t>& rgba, float cutoff) {
+  const int first = first_passing_code(cutoff);
+  std::size_t passing = 0;
+  for (std::size_t i = 3; i < rgba.size(); i += 4) passing += rgba[i] >= first;
+  return static_cast<double>(passing) / static_cast<double>(rgba.size() / 4);
+}
+
+std::vector<std::uint8_t> with_coverage(const std::vector<float>& alphas, float cutoff, double coverage) {
+  const int first = first_passing_code(cutoff);
+  const auto count = static_cast<std::size_t>(std::llround(coverage * static_cast<double>(alphas.size())));
+  const Threshold threshold = find_threshold(alphas, count);
+  float scale = 1;  // as little as will do
+  if (threshold.passing > 0 && threshold.passing < cutoff) scale = cutoff / threshold.passing;
+  if (threshold.failing >= cutoff) scale = cutoff / threshold.failing;
+  std::vector<std::uint8_t> out(alphas.size());
+  for (std::size_t i = 0; i < alphas.size(); ++i) {
+    const int code = static_cast<int>(std::clamp(alphas[i] * scale, 0.0f, 1.0f) * 255.0f + 0.5f);
+    const bool passes = alphas[i] >= threshold.passing;  // and rounding shall not change that
+    out[i] = static_cast<std::uint8_t>(passes ? std::max(code, first) : std::min(code, first - 1));
+  }
+  return out;
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// RGBA8 into blocks of 4×4 texels that GPUs sample as they are.
+#pragma once
+
+#include "mips.h"
+
+namespace chandelier::baker {
+
+enum class BlockFormat {
+  bc1,  // RGB, 8 bytes a block
+  bc3,  // RGBA, 16 bytes
+  bc5,  // red and green, 16 bytes
+};
+
+struct Blocks {
+  std::vector<std::uint8_t> bytes;  // rows of blocks from the top
+  std::uint64_t squared_error = 0;  // of all 8-bit values that the format keeps
+  std::uint64_t values = 0;         // their number; colours that alpha 0 hides do not count
+};
+
+/// ⌈size / 4⌉ blocks a side; one that hangs over the edge is fitted to the texels inside. Same blocks on any number of
+/// threads.
+Blocks compress_blocks(const Texels& texels, BlockFormat format);
+
+}  // namespace chandelier::baker

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mip levels of an image, by what its texels mean.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace chandelier::baker {
+
+/// What an image's texels mean, and so how they are averaged from level to level.
+enum class ImageUse {
+  color,         // sRGB, alpha ignored: averaged in linear light
+  masked_color,  // sRGB whose alpha is tested: averaged in linear light by its alpha, whose coverage every level keeps
+  data,          // averaged as it is
+  normal,        // averaged; all levels unit length
+};
+
+struct Texels {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> rgba;  // rows from the top
+};
+
+std::uint32_t mip_level_count(std::uint32_t width, std::uint32_t height);
+
+/// All levels down to 1×1, largest first, level n max(1, size >> n) wide and high; those above `max_size` are left out
+/// (0: none). With masked_color, `alpha_cutoff` (0 to 1) is the least alpha that is seen. Same levels on any number of
+/// threads.
+std::vector<Texels> mip_chain(Texels&& top, ImageUse use, float alpha_cutoff = 0, std::uint32_t max_size = 0);
+
+}  // namespace chandelier::baker
