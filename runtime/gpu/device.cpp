@@ -231,6 +231,10 @@ Device::Device(const DeviceOptions& options) {
 
   Features features;
   for (const auto& need : features.needs()) *need.value = VK_TRUE;
+  VkPhysicalDeviceFeatures have;
+  vkGetPhysicalDeviceFeatures(physical, &have);
+  features.core.features.textureCompressionBC = have.textureCompressionBC;
+  samples_bc = have.textureCompressionBC;
   std::vector<const char*> extensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
   if (options.swapchain) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   const float priority = 1.0f;

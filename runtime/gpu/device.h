@@ -51,6 +51,7 @@ class Device {
   VkCommandPool command_pool = VK_NULL_HANDLE;
   VkPhysicalDeviceLimits limits{};
   VkPhysicalDeviceMemoryProperties memory{};
+  bool samples_bc = false;  // block-compressed textures
   std::string name;
   std::string driver;
 

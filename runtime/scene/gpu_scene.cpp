@@ -59,6 +59,7 @@ GpuScene upload_scene(const gpu::Device& device, const pack::File& file) {
   scene.instances = upload(device, pack.instances, storage_use, "instances");
   scene.batch_instances = upload(device, pack.batch_instances, storage_use, "batch instances");
   scene.materials = upload(device, pack.materials, storage_use, "materials");
+  scene.uv_transforms = upload<glm::vec3>(device, uv_rows(pack), storage_use, "texture transforms");
   scene.batch_instance_count = static_cast<uint32_t>(pack.batch_instances.size());
   upload_runs(device, pack, scene);
   for (const pack::Material& material : pack.materials) scene.double_sided.push_back(material.double_sided != 0);

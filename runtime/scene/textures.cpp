@@ -14,21 +14,30 @@ constexpr gpu::ImageUse copied_to{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPEL
 constexpr gpu::ImageUse read_by_fragments{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                           VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
 
-VkFormat format_of(const pack::Image& image) {
-  return image.format == pack::ImageFormat::rgba8_srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+struct Format {
+  VkFormat format;
+  uint32_t block_size;   // texels a side
+  uint32_t block_bytes;  // of a block, or of a texel
+};
+
+Format format_of(const pack::Image& image) {
+  switch (image.format) {
+    case pack::ImageFormat::rgba8_srgb:
+      return {VK_FORMAT_R8G8B8A8_SRGB, 1, 4};
+    case pack::ImageFormat::bc1_srgb:
+      return {VK_FORMAT_BC1_RGB_SRGB_BLOCK, 4, 8};
+    case pack::ImageFormat::bc1_unorm:
+      return {VK_FORMAT_BC1_RGB_UNORM_BLOCK, 4, 8};
+    case pack::ImageFormat::bc3_srgb:
+      return {VK_FORMAT_BC3_SRGB_BLOCK, 4, 16};
+    case pack::ImageFormat::bc5_unorm:
+      return {VK_FORMAT_BC5_UNORM_BLOCK, 4, 16};
+    default:
+      return {VK_FORMAT_R8G8B8A8_UNORM, 1, 4};
+  }
 }
 
-gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std::span<const std::byte> texels) {
-  if (std::max(info.width, info.height) > device.limits.maxImageDimension2D)
-    throw gpu::Error("an image of " + std::to_string(info.width) + " x " + std::to_string(info.height) +
-                     " texels is too large for this device");
-  gpu::Image image = gpu::make_image(device, {.format = format_of(info),
-                                              .width = info.width,
-                                              .height = info.height,
-                                              .levels = info.level_count,
-                                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-  gpu::Buffer staging = gpu::make_buffer(device, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::upload);
-  std::copy(texels.begin(), texels.end(), staging.mapped);
+std::vector<VkBufferImageCopy> copies_of_levels(const pack::Image& info, const Format& format) {
   std::vector<VkBufferImageCopy> copies;
   VkDeviceSize offset = 0;
   for (uint32_t level = 0; level < info.level_count; ++level) {
@@ -37,8 +46,29 @@ gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std:
     copies.push_back({.bufferOffset = offset,
                       .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1},
                       .imageExtent = {width, height, 1}});
-    offset += VkDeviceSize{4} * width * height;
+    const auto blocks = [&](uint32_t texels) {
+      return VkDeviceSize{(texels + format.block_size - 1) / format.block_size};
+    };
+    offset += format.block_bytes * blocks(width) * blocks(height);
   }
+  return copies;
+}
+
+gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std::span<const std::byte> texels) {
+  if (std::max(info.width, info.height) > device.limits.maxImageDimension2D)
+    throw gpu::Error("an image of " + std::to_string(info.width) + " x " + std::to_string(info.height) +
+                     " texels is too large for this device");
+  const Format format = format_of(info);
+  if (format.block_size > 1 && !device.samples_bc)
+    throw gpu::Error("this device has no BC textures: bake with --textures raw");
+  gpu::Image image = gpu::make_image(device, {.format = format.format,
+                                              .width = info.width,
+                                              .height = info.height,
+                                              .levels = info.level_count,
+                                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+  gpu::Buffer staging = gpu::make_buffer(device, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::upload);
+  std::copy(texels.begin(), texels.end(), staging.mapped);
+  const std::vector<VkBufferImageCopy> copies = copies_of_levels(info, format);
   gpu::run_once(device, [&](VkCommandBuffer cmd) {
     gpu::image_barrier(cmd, image, nothing_yet, copied_to);
     vkCmdCopyBufferToImage(cmd, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -117,6 +147,12 @@ VkDescriptorImageInfo describe(const pack::View& pack, const GpuScene& scene, ui
   return {scene.samplers[sampler], image.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }
 
+// In the order of shading/material.glsl.
+std::array<uint32_t, textures_per_material> textures_of(const pack::Material& material) {
+  return {material.base_color_texture, material.metallic_roughness_texture, material.normal_texture,
+          material.occlusion_texture, material.emissive_texture};
+}
+
 VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& pack, const GpuScene& scene,
                                   const pack::Material& material) {
   const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
@@ -125,9 +161,7 @@ VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& p
                                          .pSetLayouts = scene.material_layout.address()};
   VkDescriptorSet set = VK_NULL_HANDLE;
   gpu::check(vkAllocateDescriptorSets(device.handle, &info, &set), "vkAllocateDescriptorSets");
-  const uint32_t textures[textures_per_material]{material.base_color_texture, material.metallic_roughness_texture,
-                                                 material.normal_texture, material.occlusion_texture,
-                                                 material.emissive_texture};
+  const auto textures = textures_of(material);
   for (uint32_t i = 0; i < textures_per_material; ++i) {
     const VkDescriptorImageInfo image = describe(pack, scene, textures[i]);
     const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -142,6 +176,18 @@ VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& p
 }
 
 }  // namespace
+
+std::vector<glm::vec3> uv_rows(const pack::View& pack) {
+  std::vector<glm::vec3> rows;
+  for (const pack::Material& material : pack.materials) {
+    for (const uint32_t texture : textures_of(material)) {
+      const bool absent = texture == pack::none;
+      rows.push_back(absent ? glm::vec3(1, 0, 0) : pack.textures[texture].uv_transform[0]);
+      rows.push_back(absent ? glm::vec3(0, 1, 0) : pack.textures[texture].uv_transform[1]);
+    }
+  }
+  return rows;
+}
 
 void upload_textures(const gpu::Device& device, const pack::View& pack, GpuScene& scene) {
   for (const pack::Image& image : pack.images)

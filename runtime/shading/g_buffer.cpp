@@ -34,7 +34,7 @@ void begin_pass(VkCommandBuffer cmd, const Targets& targets) {
 
 gpu::Pipeline make_g_buffer_pipeline(const gpu::Device& device, const GpuScene& scene) {
   const gpu::LayoutInfo layout{
-      std::vector<VkDescriptorType>(4, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {scene.material_layout}};
+      std::vector<VkDescriptorType>(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {scene.material_layout}};
   return gpu::make_graphics_pipeline(device, {.layout = layout,
                                               .vertex = g_buffer_vert,
                                               .fragment = g_buffer_frag,
@@ -53,9 +53,9 @@ void record_g_buffer(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const G
   const VkDeviceSize offsets[]{0, 0};
   vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
   vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
-  gpu::bind(
-      cmd, pipeline,
-      {gpu::storage(view), gpu::storage(lists.draws), gpu::storage(scene.instances), gpu::storage(scene.materials)});
+  gpu::bind(cmd, pipeline,
+            {gpu::storage(view), gpu::storage(lists.draws), gpu::storage(scene.instances),
+             gpu::storage(scene.materials), gpu::storage(scene.uv_transforms)});
   for (const DrawList& list : lists_by_material(scene)) {
     vkCmdSetCullMode(cmd, scene.double_sided[list.material] ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 1, 1,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The g-buffer's surfaces, and the radiance that needs no light: emission and ambient.
+// The g-buffer's surfaces, and the radiance that needs no light: emission and ambient, with alpha 1. Alpha 0 says that
+// the colour is what the screen shall show (KHR_materials_unlit): neither light nor exposure changes it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
@@ -13,9 +14,9 @@ layout(binding = 3, scalar) readonly buffer Materials { Material materials[]; };
 layout(location = 0) in vec3 position_from_eye;
 layout(location = 1) in vec3 normal_ws;
 layout(location = 2) in vec4 tangent_ws;
-layout(location = 3) in vec4 uv0_uv1;
-layout(location = 4) in vec4 color;
-layout(location = 5) flat in uint material_number;
+layout(location = 3) in vec2 uv[5];
+layout(location = 8) in vec4 color;
+layout(location = 9) flat in uint material_number;
 
 layout(location = 0) out uvec4 surface_bits;
 layout(location = 1) out vec4 radiance;
@@ -25,14 +26,14 @@ vec3 bent_normal(Material m, vec3 n) {
   vec3 t = tangent_ws.xyz - n * dot(n, tangent_ws.xyz);
   if (m.normal_texture == NONE || dot(t, t) < 1e-12) return n;
   t = normalize(t);
-  vec3 sampled = texture(normal_map, uv_of(m, 2u, uv0_uv1)).xyz * 2.0 - 1.0;
+  vec3 sampled = unit_normal(texture(normal_map, uv[2]).xy);
   sampled.xy *= m.normal_scale;
   return normalize(sampled.x * t + sampled.y * cross(n, t) * tangent_ws.w + sampled.z * n);
 }
 
 void main() {
   Material m = materials[material_number];
-  vec4 base = m.base_color_factor * color * texture(base_color_map, uv_of(m, 0u, uv0_uv1));
+  vec4 base = m.base_color_factor * color * texture(base_color_map, uv[0]);
 
   vec3 facet = cross(dFdx(position_from_eye), dFdy(position_from_eye));
   facet = dot(facet, position_from_eye) > 0.0 ? -facet : facet;
@@ -42,16 +43,15 @@ void main() {
   if (!gl_FrontFacing) bent = -bent;
 
   vec2 metal_rough = vec2(m.metallic_factor, m.roughness_factor);
-  if (m.metallic_roughness_texture != NONE)
-    metal_rough *= texture(metallic_roughness_map, uv_of(m, 1u, uv0_uv1)).bg;
+  if (m.metallic_roughness_texture != NONE) metal_rough *= texture(metallic_roughness_map, uv[1]).bg;
   vec3 emissive = m.emissive;
-  if (m.emissive_texture != NONE) emissive *= texture(emissive_map, uv_of(m, 4u, uv0_uv1)).rgb;
+  if (m.emissive_texture != NONE) emissive *= texture(emissive_map, uv[4]).rgb;
   float occlusion = 1.0;
   if (m.occlusion_texture != NONE)
-    occlusion += m.occlusion_strength * (texture(occlusion_map, uv_of(m, 3u, uv0_uv1)).r - 1.0);
+    occlusion += m.occlusion_strength * (texture(occlusion_map, uv[3]).r - 1.0);
 
   // Last: derivatives are undefined beside a pixel that has ended.
   if (m.alpha_mode == ALPHA_MODE_MASK && base.a < m.alpha_cutoff) discard;
   surface_bits = pack_surface(Surface(bent, facet, base.rgb, metal_rough.x, metal_rough.y));
-  radiance = vec4(emissive + view.ambient * occlusion * base.rgb, 1.0);
+  radiance = m.unlit != 0u ? vec4(base.rgb, 0.0) : vec4(emissive + view.ambient * occlusion * base.rgb, 1.0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A material's factors and its five textures (set 1), as glTF combines them.
+// A material's five textures (set 1).
 #ifndef CHANDELIER_MATERIAL_GLSL
 #define CHANDELIER_MATERIAL_GLSL
 
@@ -9,9 +9,10 @@ layout(set = 1, binding = 2) uniform sampler2D normal_map;
 layout(set = 1, binding = 3) uniform sampler2D occlusion_map;
 layout(set = 1, binding = 4) uniform sampler2D emissive_map;
 
-// `texture_number`: 0 to 4 in the order above.
-vec2 uv_of(Material m, uint texture_number, vec4 uv0_uv1) {
-  return (m.uv1_mask >> texture_number & 1u) != 0u ? uv0_uv1.zw : uv0_uv1.xy;
+// A normal map's texel: z is not stored in all formats, so it comes from x and y.
+vec3 unit_normal(vec2 stored) {
+  vec2 xy = stored * 2.0 - 1.0;
+  return vec3(xy, sqrt(max(1.0 - dot(xy, xy), 0.0)));
 }
 
 #endif

@@ -91,9 +91,10 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(vec2(pixel), view.size_px))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
-  if (depth == 0.0 || round.map_count == 0u) return;
+  vec4 radiance = imageLoad(radiance_image, pixel);
+  bool unlit = radiance.a == 0.0;
+  if (depth == 0.0 || unlit || round.map_count == 0u) return;
   Surface s = unpack_surface(texelFetch(surface_image, pixel, 0));
   vec3 p = world_position(pixel, depth);
-  vec4 radiance = imageLoad(radiance_image, pixel);
   imageStore(radiance_image, pixel, vec4(radiance.rgb + lit_by_round(s, p, vec2(pixel)), radiance.a));
 }

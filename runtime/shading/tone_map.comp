@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear radiance to what a screen shows: exposure, a filmic curve, sRGB.
+// Linear radiance to what a screen shows: exposure, a filmic curve, sRGB; unlit colours (alpha 0) by sRGB alone.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
@@ -18,6 +18,8 @@ vec3 srgb(vec3 x) { return mix(x * 12.92, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.05
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, imageSize(shown_image)))) return;
-  vec3 exposed = min(imageLoad(radiance_image, pixel).rgb * exp2(sums[0].exposure_ev), vec3(1e4));  // white long before
-  imageStore(shown_image, pixel, vec4(srgb(filmic(exposed)), 1.0));
+  vec4 radiance = imageLoad(radiance_image, pixel);
+  vec3 exposed = min(radiance.rgb * exp2(sums[0].exposure_ev), vec3(1e4));  // white long before
+  vec3 shown = radiance.a == 0.0 ? clamp(radiance.rgb, 0.0, 1.0) : filmic(exposed);
+  imageStore(shown_image, pixel, vec4(srgb(shown), 1.0));
 }

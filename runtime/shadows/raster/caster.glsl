@@ -12,12 +12,14 @@ layout(binding = 2, scalar) readonly buffer Instances { Instance instances[]; };
 
 layout(location = 0) in vec3 position_ls;
 #ifdef MASKED
+#include "shading/uv_transform.glsl"
+layout(binding = 3, scalar) readonly buffer Materials { Material materials[]; };
 layout(location = 3) in vec2 uv0_in;
 layout(location = 4) in vec2 uv1_in;
 layout(location = 5) in vec4 color_in;
-layout(location = 0) out vec4 uv0_uv1;
+layout(location = 0) out vec2 uv;
 layout(location = 1) out float alpha;
-layout(location = 2) flat out uint material;
+layout(location = 2) flat out float alpha_cutoff;
 #endif
 
 void main() {
@@ -28,8 +30,9 @@ void main() {
                 vec4(p, 1.0);
   gl_Layer = int(view.layer);
 #ifdef MASKED
-  uv0_uv1 = vec4(uv0_in, uv1_in);
-  alpha = color_in.a;
-  material = draw.material;
+  Material m = materials[draw.material];
+  uv = uv_of(m.uv1_mask, draw.material, 0u, uv0_in, uv1_in);
+  alpha = m.base_color_factor.a * color_in.a;
+  alpha_cutoff = m.alpha_cutoff;
 #endif
 }

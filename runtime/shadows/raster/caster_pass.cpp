@@ -33,7 +33,7 @@ CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene&
   std::erase_if(with_uv[1].attributes, [](const auto& attribute) { return attribute.location < 3; });
   const gpu::LayoutInfo opaque{std::vector<VkDescriptorType>(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {}};
   const gpu::LayoutInfo masked{
-      std::vector<VkDescriptorType>(4, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {scene.material_layout}};
+      std::vector<VkDescriptorType>(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {scene.material_layout}};
   return {gpu::make_graphics_pipeline(
               device,
               {.layout = opaque, .vertex = caster_vert, .streams = position_stream(), .depth = VK_FORMAT_D32_SFLOAT}),
@@ -58,9 +58,9 @@ void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const
   gpu::bind(cmd, pipelines.opaque, {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances)});
   draw_list(cmd, lists, draw_lists[0], view_count);
   if (draw_lists.size() > 1)
-    gpu::bind(
-        cmd, pipelines.masked,
-        {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances), gpu::storage(scene.materials)});
+    gpu::bind(cmd, pipelines.masked,
+              {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances),
+               gpu::storage(scene.materials), gpu::storage(scene.uv_transforms)});
   for (size_t i = 1; i < draw_lists.size(); ++i) {
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.masked.layout, 1, 1,
                             &scene.material_sets[draw_lists[i].material], 0, nullptr);
