@@ -46,7 +46,7 @@ struct Box {
 
 /// Where the triangles' centres are cut into bins, along each axis.
 struct BinRule {
-  float low[3], per_size[3];  // 0: all centres are the same
+  float low[3], per_size[3];  // both 0 where all centres are the same, or too far apart for a float
   int bins;
 
   int bin_of(const TriangleBox& box, int axis) const {
@@ -75,9 +75,10 @@ BinRule bin_rule(Boxes boxes) {
   rule.bins = boxes.size() > 2048 ? 16 : kMostBins;
   for (int axis = 0; axis < 3; ++axis) {
     const float size = centers.high[axis] - centers.low[axis];
-    rule.low[axis] = centers.low[axis];
     const float per_size = static_cast<float>(rule.bins) / size;
-    rule.per_size[axis] = std::isfinite(size) && std::isfinite(per_size) ? per_size : 0;
+    if (!std::isfinite(size) || !std::isfinite(per_size)) continue;
+    rule.low[axis] = centers.low[axis];
+    rule.per_size[axis] = per_size;
   }
   return rule;
 }

@@ -4,7 +4,6 @@
 
 #include "bake/tangents.h"
 #include "bake/weld.h"
-#include "gltf_builder.h"
 
 namespace chandelier::baker::test {
 namespace {
@@ -78,16 +77,41 @@ TEST(Tangents, AreAcrossTheNormalWhereTextureCoordinatesSayNothing) {
   }
 }
 
-TEST(Weld, MergesEqualVerticesAndDropsTrianglesThatCollapse) {
+TEST(Tangents, KeepJointsAndWeightsWithTheirVertices) {
+  Scene scene;
+  scene.meshes.resize(1);
+  scene.meshes[0].primitives.push_back(square({{0, 1}, {1, 1}, {0, 0}, {1, 0}}));  // the upper half is mirrored
+  Primitive& primitive = scene.meshes[0].primitives[0];
+  primitive.needs_tangents = true;
+  for (std::uint16_t i = 0; i < 4; ++i) primitive.skin_vertices.push_back({{i, 0, 0, 0}, {65535, 0, 0, 0}});
+  EXPECT_EQ(make_tangents(scene), 1u);
+  ASSERT_EQ(primitive.skin_vertices.size(), primitive.vertices.size());
+  EXPECT_GT(primitive.vertices.size(), 4u);
+  const glm::vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  for (std::size_t i = 0; i < primitive.vertices.size(); ++i) {
+    EXPECT_EQ(primitive.vertices[i].position_ls, corners[primitive.skin_vertices[i].joints[0]]);
+  }
+}
+
+TEST(Weld, MergesEqualVertices) {
   Primitive primitive = square({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
   const Vertex first = primitive.vertices[0];
-  primitive.vertices.push_back(first);                           // number 4 is number 0 again
-  primitive.indices.insert(primitive.indices.end(), {4, 2, 3,    // a triangle of its own
-                                                     0, 4, 1,    // repeats a vertex once welded
-                                                     1, 1, 2});  // repeats one outright
+  primitive.vertices.push_back(first);  // number 4 is number 0 again
+  primitive.indices.insert(primitive.indices.end(), {4, 2, 3});
   weld(primitive);
   EXPECT_EQ(primitive.vertices.size(), 4u);
-  EXPECT_EQ(primitive.indices.size(), 9u);
+  EXPECT_EQ(primitive.indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 0, 2, 3}));
+}
+
+TEST(Weld, KeepsVerticesApartThatDifferInJointsAlone) {
+  Primitive primitive = square({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+  primitive.vertices.push_back(primitive.vertices[0]);
+  primitive.skin_vertices.resize(5);
+  primitive.skin_vertices[4].joints[0] = 1;
+  primitive.indices.insert(primitive.indices.end(), {4, 2, 3});
+  weld(primitive);
+  EXPECT_EQ(primitive.vertices.size(), 5u);
+  EXPECT_EQ(primitive.skin_vertices.size(), 5u);
 }
 
 }  // namespace
