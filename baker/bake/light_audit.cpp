@@ -212,10 +212,10 @@ bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
   const glm::dvec3 from(light.position_ws);
   const std::vector<glm::dvec3> ways = directions_of(light, kRays);
   int inside = 0, kept = 0;
-  for (const glm::dvec3& way : ways) {
-    const RayHit hit = cast_ray(pack, from, way, frame::shadow_near_m);
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const RayHit hit = cast_ray(pack, from, ways[i], frame::shadow_near_m);
     if (hit.shells_around > 0) ++inside;
-    if (inside == 0 && &way == &ways[1]) return false;  // two rays agree that it stands free
+    if (i == 1 && inside == 0) return false;  // two rays agree that it stands free
     if (hit.closed_back && hit.distance_m <= light.range_m && (!hit.double_sided || hit.distance_m < kFixture_m)) {
       ++kept;
     }

@@ -59,7 +59,7 @@ void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, L
   }
   for (const auto& [key, value] : extras.json.items()) {
     if (std::find(kKnownKeys.begin(), kKnownKeys.end(), key) != kKnownKeys.end()) continue;
-    warnings.add(gltf.file, here, "extras.chandelier: unknown key is ignored", key);
+    warnings.add(gltf.file, here, "extras.chandelier: unknown key is ignored", key.empty() ? "an empty name" : key);
   }
   if (const auto value = extras.integer("priority", 0, kMostPriority)) out.priority = *value;
   if (const auto value = extras.boolean("dynamic")) out.dynamic = *value;
