@@ -4,10 +4,13 @@
 #include "cache.h"
 
 #include <elf.h>
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <link.h>
 #include <sys/stat.h>
 #include <xxhash.h>
+
+#include <algorithm>
 
 namespace chandelier::baker {
 namespace {
@@ -99,6 +102,8 @@ std::unique_ptr<CacheEntry> Cache::load(const std::string& name) {
     reject(name, fault);
     return nullptr;
   }
+  // Used now: whoever tidies the folder up by age keeps it.
+  if (entry) utimensat(AT_FDCWD, path_of(name).c_str(), nullptr, 0);
   const std::lock_guard lock(mutex_);
   loads_[name] = entry != nullptr;
   return entry;
@@ -115,6 +120,7 @@ void Cache::store(const std::string& name, const pack::View& sections, const std
   const std::string source = name + "\n" + notes;
   std::vector<std::byte> strings(sections.strings.begin(), sections.strings.end());
   pack::BakeInfo info = *sections.bake_info;
+  info.batch_triangles = std::max(info.batch_triangles, 1u);  // the bake says it later; a pack needs some
   info.source = {fit_u32(strings.size(), "bytes of names"), fit_u32(source.size(), "bytes of names")};
   const auto* text = reinterpret_cast<const std::byte*>(source.data());
   strings.insert(strings.end(), text, text + source.size());

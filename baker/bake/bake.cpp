@@ -5,6 +5,7 @@
 #include <span>
 
 #include "../error.h"
+#include "animation.h"
 #include "batch_bvh.h"
 #include "geometry_cache.h"
 #include "images.h"
@@ -43,8 +44,8 @@ std::uint64_t bytes_of(const std::vector<Records>&... sections) {
   return (std::span(sections).size_bytes() + ...);
 }
 
-/// Everything that neither lights nor image bytes touch: what a cache keeps from one bake to the next. Materials are
-/// there already.
+/// Everything that neither lights nor image bytes touch: what a cache keeps from one bake to the next. Materials and
+/// nodes are there already.
 void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
                    [[maybe_unused]] Warnings& warnings, Strings& strings, pack::Contents& pack) {
   const std::vector<MeshRecords> meshes = bake_meshes(scene, settings, report, pack);
@@ -75,8 +76,8 @@ void find_or_bake_geometry(Scene& scene, const BakeSettings& settings, const Pro
   report.run("keep_geometry", [&](PassReport&) { store_geometry(cache, entry, report, first_pass, pack); });
 }
 
-void bake_lights(const Scene& scene, const BakeSettings& settings, Report& report, Warnings& warnings,
-                 Strings& strings, pack::Contents& pack) {
+void bake_lights(const Scene& scene, const BakeSettings& settings, Report& report, Warnings& warnings, Strings& strings,
+                 pack::Contents& pack) {
   report.run("lights", [&](PassReport& pass) {
     make_lights(scene, settings.range_threshold_lx, strings, pack);
     pass.bytes = bytes_of(pack.lights);
@@ -103,9 +104,15 @@ pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress&
     requests = make_materials(scene, settings.images.textures != TextureMode::none, strings, pack);
     pass.bytes = bytes_of(pack.materials, pack.textures);
   });
+  report.run("animation", [&](PassReport& pass) {
+    make_animations(scene, strings, pack);
+    pass.bytes = bytes_of(pack.nodes, pack.animations, pack.animation_channels, pack.animation_times,
+                          pack.animation_values, pack.skins, pack.joints);
+    pass.count("animations", static_cast<double>(pack.animations.size()));
+  });
   find_or_bake_geometry(scene, settings, progress, report, warnings, kept, strings, pack);
   report.run("images", [&](PassReport& pass) {
-    make_images(scene, requests, settings.images, progress, pass, strings, pack);
+    make_images(scene, requests, settings.images, progress, kept, pass, strings, pack);
     pass.bytes = bytes_of(pack.images, pack.image_data);
   });
   bake_lights(scene, settings, report, warnings, strings, pack);

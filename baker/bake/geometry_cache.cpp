@@ -105,6 +105,10 @@ void store_geometry(Cache& cache, const std::string& name, const Report& report,
   pack::View view = pack::view_of(pack);
   view.materials = materials;
   view.textures = {};
+  view.animations = {};
+  view.animation_channels = {};
+  view.animation_times = {};
+  view.animation_values = {};
   cache.store(name, view, notes_of(report.passes, first_pass));
 }
 

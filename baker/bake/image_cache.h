@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is made of one encoded image, kept in a cache.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "../cache.h"
+#include "../scene.h"
+#include "images.h"
+#include "pack_schema.h"
+
+namespace chandelier::baker {
+
+/// Texels as the pack holds them.
+struct StoredTexels {
+  pack::Image record;
+  std::vector<std::uint8_t> bytes;
+  std::uint64_t texels = 0;         // of all levels
+  std::uint64_t squared_error = 0;  // what compression lost, as in Blocks
+  std::uint64_t values = 0;
+};
+
+/// For all requests of one image's bytes.
+struct MadeImages {
+  std::vector<StoredTexels> images;
+  std::vector<std::size_t> of_request;  // number among `images`
+  std::string error;
+};
+
+/// The entry of an image's bytes and of what is asked of them, in this order.
+std::string image_entry(const EncodedImage& image, const std::vector<ImageRequest>& requests,
+                        const ImageSettings& settings);
+
+/// False where the cache has no such entry, or none for so many requests.
+bool load_images(Cache& cache, const std::string& entry, std::size_t request_count, MadeImages& made);
+void store_images(Cache& cache, const std::string& entry, const MadeImages& made);
+
+}  // namespace chandelier::baker
