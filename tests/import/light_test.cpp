@@ -93,6 +93,58 @@ TEST(Light, IsSkippedWithAWarningWhereItGivesNoLight) {
   }
 }
 
+TEST(Light, IsOfUsualPriorityAndStaticAndClusteredUnlessItsAuthorSaysOtherwise) {
+  const pack::Light light = with_light({{"type", "point"}}).bake().lights.at(0);
+  EXPECT_EQ(light.priority, 128u);
+  EXPECT_EQ(light.dynamic, 0u);
+  EXPECT_EQ(light.unclustered, 0u);
+  EXPECT_EQ(light.node, pack::none);
+}
+
+TEST(Light, TakesItsAuthorsWordsFromExtrasTheNodesFirst) {
+  const Json on_light = {{"priority", 7}, {"dynamic", true}, {"range_m", 3}, {"power_w", 60}};
+  const Json on_node = {{"priority", 9}, {"cluster", false}};
+  const GltfBuilder gltf = with_light({{"type", "point"}, {"range", 20}, {"extras", {{"chandelier", on_light}}}},
+                                      {{"extras", {{"chandelier", on_node}, {"note", "the big one"}}}});
+  const Scene scene = gltf.import();
+  EXPECT_EQ(scene.lights.at(0).power_w, 60);
+  EXPECT_NE(scene.lights.at(0).where.find("scene.gltf: node 0"), std::string::npos);
+  const pack::Light light = gltf.bake().lights.at(0);
+  EXPECT_EQ(light.priority, 9u);
+  EXPECT_EQ(light.dynamic, 1u);
+  EXPECT_EQ(light.unclustered, 1u);
+  EXPECT_EQ(light.range_m, 3);
+  EXPECT_EQ(light.range_source, pack::RangeSource::authored);
+}
+
+TEST(Light, HasBoundsAroundWhatItReaches) {
+  const pack::Light point =
+      with_light({{"type", "point"}, {"range", 7}}, {{"translation", {1, 2, 3}}}).bake().lights.at(0);
+  EXPECT_EQ(point.bounds_center_ws, glm::vec3(1, 2, 3));
+  EXPECT_EQ(point.bounds_radius_m, 7);
+  const Json spot = {{"type", "spot"}, {"range", 6}, {"spot", {{"outerConeAngle", 1.0471975512}}}};  // 60 degrees
+  const pack::Light lit = with_light(spot).bake().lights.at(0);
+  expect_near(lit.bounds_center_ws, {0, 0, -3});  // in the middle of the rim
+  EXPECT_NEAR(lit.bounds_radius_m, 6 * std::sqrt(0.75), 1e-5);
+}
+
+TEST(Light, IsInAVoxelWhereThereAreAny) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}, {{"type", "directional"}}};
+  const Json inside = {0.25, 0.25, 0}, outside = {2, 0.25, 0};
+  for (const auto& [light, place] : {std::pair(0, inside), std::pair(0, outside), std::pair(1, inside)}) {
+    gltf.add_node({{"translation", place}, {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+  }
+  const pack::Contents pack = gltf.bake();
+  ASSERT_EQ(pack.voxel_grid.size(), 1u);
+  const pack::VoxelGrid& grid = pack.voxel_grid[0];
+  const auto cell = glm::uvec3((glm::vec3(0.25f, 0.25f, 0) - grid.bounds_min_ws) / grid.cell_size_m);
+  EXPECT_EQ(pack.lights.at(0).voxel, cell.x + grid.resolution[0] * (cell.y + grid.resolution[1] * cell.z));
+  EXPECT_EQ(pack.lights.at(1).voxel, pack::none);
+  EXPECT_EQ(pack.lights.at(2).voxel, pack::none);
+}
+
 TEST(Light, ServesManyNodes) {
   GltfBuilder gltf = with_light({{"type", "point"}});
   gltf.add_node({{"translation", {4, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
