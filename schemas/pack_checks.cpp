@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "pack_checks_animation.h"
 #include "pack_checks_bvh.h"
 #include "pack_checks_lights.h"
 #include "pack_checks_voxels.h"
@@ -149,6 +150,7 @@ std::string check(const View& view) {
   if (std::string line = light_fault(view); !line.empty()) return line;
   if (std::string line = bvh_fault(view); !line.empty()) return line;
   if (std::string line = voxel_fault(view); !line.empty()) return line;
+  if (std::string line = animation_fault(view); !line.empty()) return line;
   return first_fault("cameras", view.cameras);
 }
 

@@ -26,6 +26,9 @@ pack::Instance instance_record(const MeshInstance& instance, std::uint32_t mesh,
       out.world_from_local[row][column] = static_cast<float>(instance.world_from_local[column][row]);
     }
   }
+  out.node = instance.node;
+  out.skin = instance.skin;
+  out.dynamic = instance.node != kNone || instance.skin != kNone;
   out.name = strings.add(instance.name);
   return out;
 }

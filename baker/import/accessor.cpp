@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accessors: every range is checked before a byte is read.
+// Accessors: every range is checked before a byte is read, and then read in blocks of one type.
 #include "accessor.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
 namespace chandelier::baker {
 namespace {
-
-std::size_t component_size(int type) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
-    default:
-      return 4;
-  }
-}
 
 template <typename T>
 T value_at(const std::uint8_t* bytes) {
@@ -30,27 +20,42 @@ T value_at(const std::uint8_t* bytes) {
 }
 
 /// glTF 2.0, 3.11: normalized integers.
-float component_at(const std::uint8_t* bytes, int type, bool normalized) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: {
-      const auto v = static_cast<float>(value_at<std::int8_t>(bytes));
-      return normalized ? std::max(v / 127.0f, -1.0f) : v;
-    }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return static_cast<float>(*bytes) / (normalized ? 255.0f : 1.0f);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: {
-      const auto v = static_cast<float>(value_at<std::int16_t>(bytes));
-      return normalized ? std::max(v / 32767.0f, -1.0f) : v;
-    }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return static_cast<float>(value_at<std::uint16_t>(bytes)) / (normalized ? 65535.0f : 1.0f);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: {
-      const double v = value_at<std::uint32_t>(bytes);
-      return static_cast<float>(normalized ? v / 4294967295.0 : v);
-    }
-    default:
-      return value_at<float>(bytes);
+template <typename T>
+float to_float(T value, bool normalized) {
+  if constexpr (std::is_same_v<T, float>) return value;
+  if constexpr (std::is_same_v<T, std::uint32_t>) {
+    return static_cast<float>(normalized ? static_cast<double>(value) / 4294967295.0 : static_cast<double>(value));
+  } else {
+    const auto v = static_cast<float>(value);
+    if (!normalized) return v;
+    return std::max(v / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
   }
+}
+
+template <typename T>
+void convert(const Elements& elements, std::size_t first, std::size_t count, float* out) {
+  const std::uint8_t* from = elements.data + first * elements.stride;
+  for (std::size_t i = 0; i < count; ++i, from += elements.stride) {
+    for (std::size_t c = 0; c < elements.components; ++c) {
+      *out++ = to_float(value_at<T>(from + c * sizeof(T)), elements.normalized);
+    }
+  }
+}
+
+void convert_floats(const Elements& elements, std::size_t first, std::size_t count, float* out) {
+  const std::size_t bytes = elements.components * sizeof(float);
+  const std::uint8_t* from = elements.data + first * elements.stride;
+  if (elements.stride == bytes) {
+    std::memcpy(out, from, count * bytes);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * elements.components, from + i * elements.stride, bytes);
+}
+
+template <typename T>
+void copy_indices(const Elements& elements, std::size_t first, std::size_t count, std::uint32_t* out) {
+  const std::uint8_t* from = elements.data + first * elements.stride;
+  for (std::size_t i = 0; i < count; ++i) out[i] = value_at<T>(from + i * elements.stride);
 }
 
 std::uint32_t index_at(const std::uint8_t* bytes, int type) {
@@ -92,17 +97,20 @@ std::span<const std::uint8_t> element_bytes(const Gltf& gltf, int view, std::uin
   return bytes.subspan(offset);
 }
 
-/// Calls `store(element number, bytes)` for the base data, then for the sparse replacements.
-template <typename Store>
-void for_each_element(const Gltf& gltf, const tinygltf::Accessor& accessor, std::size_t element,
-                      const std::string& where, Store store) {
-  if (accessor.bufferView >= 0) {
-    const auto& view = gltf.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
-    const std::size_t stride = view.byteStride ? view.byteStride : element;
-    const auto bytes =
-        element_bytes(gltf, accessor.bufferView, accessor.byteOffset, accessor.count, stride, element, where);
-    for (std::size_t i = 0; i < accessor.count; ++i) store(i, bytes.data() + i * stride);
+/// Copies the elements together and puts sparse values in their places.
+void gather(const Gltf& gltf, const tinygltf::Accessor& accessor, std::size_t element, const std::string& where,
+            Elements& out) {
+  constexpr std::size_t kMostZeros = std::size_t{1} << 22;  // a few bytes of a file can ask for any number
+  if (!out.data && accessor.count > kMostZeros) {
+    fail(where, "accessor without a buffer view has more than " + std::to_string(kMostZeros) + " elements (" +
+                    std::to_string(accessor.count) + ")");
   }
+  out.own.resize(accessor.count * element);
+  for (std::size_t i = 0; out.data && i < out.count; ++i) {
+    std::memcpy(out.own.data() + i * element, out.data + i * out.stride, element);
+  }
+  out.data = out.own.data();
+  out.stride = element;
   if (!accessor.sparse.isSparse) return;
   const auto& sparse = accessor.sparse;
   const auto count = static_cast<std::size_t>(sparse.count);
@@ -117,11 +125,42 @@ void for_each_element(const Gltf& gltf, const tinygltf::Accessor& accessor, std:
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t at = index_at(indices.data() + i * index_size, sparse.indices.componentType);
     if (at >= accessor.count) fail(where + ", sparse indices", "index is out of range (" + std::to_string(at) + ")");
-    store(at, values.data() + i * element);
+    std::memcpy(out.own.data() + at * element, values.data() + i * element, element);
   }
 }
 
+Elements open_elements(const Gltf& gltf, const tinygltf::Accessor& accessor, std::size_t components,
+                       const std::string& where) {
+  Elements out;
+  out.count = accessor.count;
+  out.components = components;
+  out.component_type = accessor.componentType;
+  out.normalized = accessor.normalized;
+  const std::size_t element = components * component_size(accessor.componentType);
+  if (accessor.bufferView >= 0) {
+    const auto& view = gltf.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+    out.stride = view.byteStride ? view.byteStride : element;
+    out.data = element_bytes(gltf, accessor.bufferView, accessor.byteOffset, accessor.count, out.stride, element, where)
+                   .data();
+  }
+  if (!out.data || accessor.sparse.isSparse) gather(gltf, accessor, element, where, out);
+  return out;
+}
+
 }  // namespace
+
+std::size_t component_size(int type) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 1;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 2;
+    default:
+      return 4;
+  }
+}
 
 const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int index, const std::string& where) {
   const tinygltf::Accessor& accessor = gltf.model.accessors[static_cast<std::size_t>(index)];
@@ -138,31 +177,70 @@ const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int index, const st
   return accessor;
 }
 
+Elements elements_of(const Gltf& gltf, int index, std::size_t least, std::size_t most, const std::string& where) {
+  const tinygltf::Accessor& accessor = checked_accessor(gltf, index, where);
+  const bool vector = accessor.type == TINYGLTF_TYPE_SCALAR ||
+                      (accessor.type >= TINYGLTF_TYPE_VEC2 && accessor.type <= TINYGLTF_TYPE_VEC4);
+  const std::size_t components =
+      accessor.type == TINYGLTF_TYPE_MAT4 ? 16
+      : vector ? static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)))
+               : 0;
+  if (components < least || components > most) {
+    fail(where,
+         "accessor " + std::to_string(index) + " has the wrong type (" + std::to_string(components) + " components)");
+  }
+  return open_elements(gltf, accessor, components, where);
+}
+
+std::size_t to_floats(const Elements& elements, std::size_t first, std::size_t count, float* out) {
+  switch (elements.component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      convert<std::int8_t>(elements, first, count, out);
+      break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      convert<std::uint8_t>(elements, first, count, out);
+      break;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      convert<std::int16_t>(elements, first, count, out);
+      break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      convert<std::uint16_t>(elements, first, count, out);
+      break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      convert<std::uint32_t>(elements, first, count, out);
+      break;
+    default:
+      convert_floats(elements, first, count, out);
+  }
+  const std::size_t values = count * elements.components;
+  std::uint32_t bad = 0;  // no branch: the compiler makes vectors of it
+  for (std::size_t i = 0; i < values; ++i) {
+    const auto bits = std::bit_cast<std::uint32_t>(out[i]);
+    bad |= std::uint32_t{(bits & 0x7F800000u) == 0x7F800000u};
+  }
+  if (!bad) return SIZE_MAX;
+  for (std::size_t i = 0;; ++i) {
+    if (!std::isfinite(out[i])) return first + i / elements.components;
+  }
+}
+
+void fail_not_finite(const Elements& elements, std::size_t element, const std::string& where) {
+  std::vector<float> values(elements.components);
+  to_floats(elements, element, 1, values.data());
+  for (const float value : values) {
+    if (!std::isfinite(value)) {
+      fail(where, "value is not finite (" + std::to_string(value) + " in element " + std::to_string(element) + ")");
+    }
+  }
+  fail(where, "value is not finite");
+}
+
 Floats read_floats(const Gltf& gltf, int index, std::size_t least_components, std::size_t most_components,
                    const std::string& where) {
-  const tinygltf::Accessor& accessor = checked_accessor(gltf, index, where);
-  const int type = accessor.type;
-  const bool plain = type == TINYGLTF_TYPE_SCALAR || (type >= TINYGLTF_TYPE_VEC2 && type <= TINYGLTF_TYPE_VEC4);
-  Floats out;
-  out.components = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
-  if (!plain || out.components < least_components || out.components > most_components) {
-    fail(where, "accessor " + std::to_string(index) + " has the wrong type (" + std::to_string(out.components) +
-                    " components)");
-  }
-  out.count = accessor.count;
-  out.values.resize(out.count * out.components);
-  const std::size_t size = component_size(accessor.componentType);
-  for_each_element(gltf, accessor, size * out.components, where, [&](std::size_t i, const std::uint8_t* bytes) {
-    for (std::size_t c = 0; c < out.components; ++c) {
-      out.values[i * out.components + c] = component_at(bytes + c * size, accessor.componentType, accessor.normalized);
-    }
-  });
-  for (std::size_t i = 0; i < out.values.size(); ++i) {
-    if (!std::isfinite(out.values[i])) {
-      fail(where, "value is not finite (" + std::to_string(out.values[i]) + " in element " +
-                      std::to_string(i / out.components) + ")");
-    }
-  }
+  const Elements elements = elements_of(gltf, index, least_components, most_components, where);
+  Floats out{elements.count, elements.components, std::vector<float>(elements.count * elements.components)};
+  const std::size_t bad = to_floats(elements, 0, elements.count, out.values.data());
+  if (bad != SIZE_MAX) fail_not_finite(elements, bad, where);
   return out;
 }
 
@@ -170,16 +248,42 @@ std::vector<std::uint32_t> read_indices(const Gltf& gltf, int index, std::uint64
   const tinygltf::Accessor& accessor = checked_accessor(gltf, index, where);
   if (accessor.type != TINYGLTF_TYPE_SCALAR) fail(where, "accessor " + std::to_string(index) + " is not SCALAR");
   need_unsigned(accessor.componentType, where);
-  std::vector<std::uint32_t> out(accessor.count, 0);
-  for_each_element(gltf, accessor, component_size(accessor.componentType), where,
-                   [&](std::size_t i, const std::uint8_t* bytes) { out[i] = index_at(bytes, accessor.componentType); });
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out[i] >= end) {
-      fail(where, "index is out of range, there are " + std::to_string(end) + " vertices (" + std::to_string(out[i]) +
-                      " at " + std::to_string(i) + ")");
-    }
+  const Elements elements = open_elements(gltf, accessor, 1, where);
+  std::vector<std::uint32_t> out(elements.count);
+  FirstFault fault;
+  for_blocks(out.size(), [&](std::size_t first, std::size_t count) {
+    const std::size_t size = component_size(elements.component_type);
+    const auto copy = size == 1   ? copy_indices<std::uint8_t>
+                      : size == 2 ? copy_indices<std::uint16_t>
+                                  : copy_indices<std::uint32_t>;
+    copy(elements, first, count, out.data() + first);
+    std::uint32_t largest = 0;
+    for (std::size_t i = first; i < first + count; ++i) largest = std::max(largest, out[i]);
+    if (largest < end) return;
+    fault.note(static_cast<std::size_t>(
+        std::find_if(out.begin() + first, out.end(), [&](std::uint32_t value) { return value >= end; }) - out.begin()));
+  });
+  if (fault.at() != SIZE_MAX) {
+    fail(where, "index is out of range, there are " + std::to_string(end) + " vertices (" +
+                    std::to_string(out[fault.at()]) + " at " + std::to_string(fault.at()) + ")");
   }
   return out;
+}
+
+void for_blocks(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
+  constexpr std::size_t kBlock = 1024;  // of vertices: 60 KiB, which caches hold while each attribute passes over them
+  constexpr std::size_t kAtOnce = 16;   // blocks that one thread takes
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (count + kBlock - 1) / kBlock, kAtOnce), [&](const auto& range) {
+    for (std::size_t block = range.begin(); block < range.end(); ++block) {
+      work(block * kBlock, std::min(kBlock, count - block * kBlock));
+    }
+  });
+}
+
+void FirstFault::note(std::size_t at) {
+  std::size_t seen = at_.load();
+  while (at < seen && !at_.compare_exchange_weak(seen, at)) {
+  }
 }
 
 }  // namespace chandelier::baker

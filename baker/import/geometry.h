@@ -20,14 +20,21 @@ struct GeometrySize {
 /// triangles, or above 2^22 zeros.
 void add_size(const Gltf& gltf, std::size_t mesh, std::size_t primitive, GeometrySize& total);
 
-/// The triangles of a primitive, or nothing where it has none (points, lines, no positions). The material is left to
-/// the caller. Throws Error.
-std::optional<Primitive> read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive, Warnings& warnings);
+/// A primitive's triangles, or nothing where it has none (points, lines, no positions); what was left out or mended;
+/// what is wrong with it. Primitives are read side by side, so all is kept until it can be told in order.
+struct ReadPrimitive {
+  std::optional<Primitive> primitive;
+  std::vector<std::string> warnings;
+  std::string error;
+};
+
+/// The material is left to the caller. Joints and weights are read where it is `skinned`.
+ReadPrimitive read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive, bool skinned);
+
+/// "mesh 3 'door', primitive 0"
+std::string place_of_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive);
 
 /// A triangle list from any glTF mode; `corners` are the primitive's vertices in drawing order.
-std::vector<std::uint32_t> triangle_list(int mode, const std::vector<std::uint32_t>& corners);
-
-/// Gives each triangle vertices of its own and its flat normal: what glTF asks for where normals are missing.
-void make_flat(Primitive& primitive);
+std::vector<std::uint32_t> triangle_list(int mode, std::vector<std::uint32_t> corners);
 
 }  // namespace chandelier::baker

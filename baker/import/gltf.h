@@ -12,18 +12,28 @@
 #include <vector>
 
 #include "../error.h"
+#include "files.h"
 
 namespace chandelier::baker {
 
 using Json = nlohmann::json;
 
+/// A buffer, or a buffer view that was decoded.
+struct Buffer {
+  Bytes data;
+  bool present = false;
+  std::string error;  // why it cannot be had, told where something reads it
+};
+
 struct Gltf {
   std::filesystem::path path;
-  std::string file;                                // the path as the user typed it, for messages
-  std::vector<std::filesystem::path> files_read;   // the glTF and those beside it
-  Json json;                                       // checked by check_gltf
-  tinygltf::Model model;                           // the same, as structs; without buffers, images, skins, animations
-  std::vector<std::vector<std::uint8_t>> buffers;  // empty where a buffer has no data of its own
+  std::string file;                               // the path as the user typed it, for messages
+  std::vector<std::filesystem::path> files_read;  // the glTF and those beside it
+  Bytes container;                                // the glTF itself
+  Json json;                                      // checked by check_gltf
+  tinygltf::Model model;                          // the same, as structs; without buffers, images, skins, animations
+  std::vector<Buffer> buffers;                    // not present: an extension or nobody has the data
+  std::vector<Buffer> decoded_views;              // one per buffer view; present where an extension compresses it
 };
 
 /// Reads the container (.gltf or .glb), parses and checks the JSON, loads the buffers. Throws Error.
@@ -39,15 +49,23 @@ void check_extensions(const Json& json, const std::string& file, Warnings& warni
 /// "mesh 3 'name'", or "mesh 3" where it has no name. `section` is the glTF array ("meshes").
 std::string place(const Json& json, const char* section, std::size_t index);
 
-/// The first `most_bytes` bytes of a regular file. Throws Error.
-std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& where,
-                                    std::uint64_t most_bytes = UINT64_MAX);
+/// One of glTF's SCALAR to MAT4.
+bool is_accessor_type(const std::string& type);
 
 /// The bytes of a data URI or of a file beside the glTF, which is noted in files_read. Throws Error.
-std::vector<std::uint8_t> read_uri(Gltf& gltf, const std::string& uri, const std::string& where,
-                                   std::uint64_t most_bytes = UINT64_MAX);
+Bytes read_uri(Gltf& gltf, const std::string& uri, const std::string& where);
+
+/// Says which buffers could not be had. Whatever needed them has failed before.
+void warn_of_buffers(const Gltf& gltf, Warnings& warnings);
+
+/// Whether the file says where the bytes of a buffer view are.
+bool is_present(const Gltf& gltf, int buffer_view);
 
 /// The bytes of a buffer view. Throws Error where they are not all there.
 std::span<const std::uint8_t> view_bytes(const Gltf& gltf, int buffer_view, const std::string& where);
+
+/// Part of a buffer; `what` begins the message where it is not all there. Throws Error.
+std::span<const std::uint8_t> buffer_bytes(const Gltf& gltf, std::size_t buffer, std::uint64_t offset,
+                                           std::uint64_t length, const std::string& what);
 
 }  // namespace chandelier::baker

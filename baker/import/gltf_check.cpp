@@ -1,115 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks the JSON of a glTF before anything trusts it: types, ranges, references, node tree.
+#include "gltf_check.h"
+
 #include <algorithm>
 #include <cmath>
-#include <optional>
-
-#include "gltf.h"
 
 namespace chandelier::baker {
 namespace {
-
-enum class Need { optional, required };
-
-std::string shown(const Json& value) {
-  return shortened(value.dump(-1, ' ', true), 60);
-}
-
-std::size_t section_size(const Json& json, const char* section) {
-  const auto it = json.find(section);
-  return it != json.end() && it->is_array() ? it->size() : 0;
-}
-
-/// One JSON object and where it is; each member function checks one of its keys.
-struct Object {
-  const Json& json;  // the object
-  std::string where;
-
-  [[noreturn]] void bad(const char* key, const std::string& what, const Json& value) const {
-    fail(where + ", " + key, what + " (" + shown(value) + ")");
-  }
-
-  const Json* find(const char* key, Need need) const {
-    const auto it = json.find(key);
-    if (it != json.end()) return &*it;
-    if (need == Need::required) fail(where, std::string("has no ") + key);
-    return nullptr;
-  }
-
-  void text(const char* key, Need need = Need::optional) const {
-    const Json* value = find(key, need);
-    if (value && !value->is_string()) bad(key, "is not a string", *value);
-  }
-
-  void boolean(const char* key) const {
-    const Json* value = find(key, Need::optional);
-    if (value && !value->is_boolean()) bad(key, "is not true or false", *value);
-  }
-
-  void integer(const char* key, std::uint64_t least, std::uint64_t most, Need need = Need::optional) const {
-    const Json* value = find(key, need);
-    if (!value) return;
-    if (!value->is_number_unsigned()) bad(key, "is not a whole number", *value);
-    const auto number = value->get<std::uint64_t>();
-    if (number < least || number > most) bad(key, "is out of range", *value);
-  }
-
-  void number(const char* key, double least, double most, Need need = Need::optional) const {
-    const Json* value = find(key, need);
-    if (value) check_number(key, *value, least, most);
-  }
-
-  void numbers(const char* key, std::size_t count, double least, double most) const {
-    const Json* value = find(key, Need::optional);
-    if (!value) return;
-    if (!value->is_array() || value->size() != count) {
-      bad(key, "is not an array of " + std::to_string(count) + " numbers", *value);
-    }
-    for (const Json& each : *value) check_number(key, each, least, most);
-  }
-
-  void check_number(const char* key, const Json& value, double least, double most) const {
-    if (!value.is_number()) bad(key, "is not a number", value);
-    const double number = value.get<double>();
-    if (!(number >= least && number <= most)) bad(key, "is out of range", value);
-  }
-
-  void index(const char* key, std::size_t count, Need need = Need::optional) const {
-    const Json* value = find(key, need);
-    if (value) check_index(key, *value, count);
-  }
-
-  void indices(const char* key, std::size_t count) const {
-    const Json* value = find(key, Need::optional);
-    if (!value) return;
-    if (!value->is_array()) bad(key, "is not an array", *value);
-    for (const Json& each : *value) check_index(key, each, count);
-  }
-
-  void check_index(const char* key, const Json& value, std::size_t count) const {
-    if (!value.is_number_unsigned()) bad(key, "is not an index", value);
-    if (value.get<std::uint64_t>() >= count) {
-      bad(key, "points past the end, there are " + std::to_string(count), value);
-    }
-  }
-
-  std::optional<Object> object(const char* key, Need need = Need::optional) const {
-    const Json* value = find(key, need);
-    if (!value) return std::nullopt;
-    if (!value->is_object()) bad(key, "is not an object", *value);
-    return Object{*value, where + ", " + key};
-  }
-
-  /// This object's data of an extension.
-  std::optional<Object> extension(const char* name) const {
-    const auto all = object("extensions");
-    return all ? all->object(name) : std::nullopt;
-  }
-};
-
-constexpr double kBig = 3e38;  // every number must fit a float
-constexpr std::uint64_t kMostBytes = 1ull << 53;
-constexpr std::uint64_t kMostInt = 0x7FFFFFFF;
 
 void check_buffer(const Json&, const Object& buffer) {
   buffer.integer("byteLength", 0, kMostBytes, Need::required);
@@ -121,8 +18,9 @@ void check_buffer_view(const Json& root, const Object& view) {
   view.integer("byteOffset", 0, kMostBytes);
   view.integer("byteLength", 0, kMostBytes, Need::required);
   view.integer("byteStride", 4, 252);
-  const Json* stride = view.find("byteStride", Need::optional);
+  const Json* stride = view.find("byteStride");
   if (stride && stride->get<std::uint64_t>() % 4 != 0) view.bad("byteStride", "is not a multiple of 4", *stride);
+  check_meshopt_view(root, view);
 }
 
 void check_component_type(const Object& object) {
@@ -138,11 +36,6 @@ void check_accessor(const Json& root, const Object& accessor) {
   accessor.boolean("normalized");
   accessor.integer("count", 0, 0xFFFFFFFEu, Need::required);
   accessor.text("type", Need::required);
-  static const char* const kTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
-  const auto& type = accessor.json["type"].get_ref<const std::string&>();
-  if (std::find(std::begin(kTypes), std::end(kTypes), type) == std::end(kTypes)) {
-    accessor.bad("type", "is not a glTF type", type);
-  }
   const auto sparse = accessor.object("sparse");
   if (!sparse) return;
   sparse->integer("count", 0, kMostInt, Need::required);
@@ -156,12 +49,8 @@ void check_accessor(const Json& root, const Object& accessor) {
 }
 
 void check_mesh(const Json& root, const Object& mesh) {
-  const Json* primitives = mesh.find("primitives", Need::required);
-  if (!primitives->is_array()) mesh.bad("primitives", "is not an array", *primitives);
   const std::size_t accessors = section_size(root, "accessors");
-  for (std::size_t i = 0; i < primitives->size(); ++i) {
-    const Object primitive{(*primitives)[i], mesh.where + ", primitive " + std::to_string(i)};
-    if (!primitive.json.is_object()) fail(primitive.where, "is not an object (" + shown(primitive.json) + ")");
+  for (const Object& primitive : mesh.objects("primitives", Need::required)) {
     primitive.integer("mode", 0, 6);
     primitive.index("material", section_size(root, "materials"));
     primitive.index("indices", accessors);
@@ -169,12 +58,13 @@ void check_mesh(const Json& root, const Object& mesh) {
     for (const auto& [name, value] : attributes->json.items()) {
       primitive.check_index(("attribute " + name).c_str(), value, accessors);
     }
+    check_draco(root, primitive);
   }
 }
 
 /// A matrix, by columns, is affine: in the world, w stays 1.
 void check_last_row(const Object& node) {
-  const Json* matrix = node.find("matrix", Need::optional);
+  const Json* matrix = node.find("matrix");
   if (!matrix) return;
   const Json row = {(*matrix)[3], (*matrix)[7], (*matrix)[11], (*matrix)[15]};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -192,6 +82,7 @@ void check_node(const Json& root, const Object& node) {
   node.numbers("translation", 3, -kBig, kBig);
   node.numbers("rotation", 4, -kBig, kBig);
   node.numbers("scale", 3, -kBig, kBig);
+  check_instancing(root, node);
   const auto light = node.extension("KHR_lights_punctual");
   if (!light) return;
   const auto extensions = root.find("extensions");
@@ -209,6 +100,7 @@ void check_texture_use(const Json& root, const Object& owner, const char* key, c
   use->index("index", section_size(root, "textures"), Need::required);
   use->integer("texCoord", 0, kMostInt);
   if (strength) use->number(strength, -kBig, kBig);
+  check_texture_transform(*use);
 }
 
 void check_material(const Json& root, const Object& material) {
@@ -234,6 +126,7 @@ void check_material(const Json& root, const Object& material) {
 void check_texture(const Json& root, const Object& texture) {
   texture.index("source", section_size(root, "images"));
   texture.index("sampler", section_size(root, "samplers"));
+  check_texture_sources(root, texture);
 }
 
 void check_sampler(const Json&, const Object& sampler) {
@@ -256,7 +149,7 @@ void check_camera(const Json&, const Object& camera) {
   }
   if (type != "perspective") camera.bad("type", "is not a camera type", type);
   const auto perspective = camera.object("perspective", Need::required);
-  perspective->number("yfov", 1e-4, 3.1, Need::required);
+  perspective->number("yfov", -kBig, kBig, Need::required);
   perspective->number("znear", 0, kBig, Need::required);
   perspective->number("zfar", 0, kBig);
   perspective->number("aspectRatio", 1e-6, 1e6);
@@ -352,6 +245,11 @@ std::string place(const Json& json, const char* section, std::size_t index) {
   return out + " '" + shortened(name->get_ref<const std::string&>(), 80) + "'";
 }
 
+bool is_accessor_type(const std::string& type) {
+  static const char* const kTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+  return std::find(std::begin(kTypes), std::end(kTypes), type) != std::end(kTypes);
+}
+
 void check_gltf(const Json& json, const std::string& file) {
   if (!json.is_object()) fail(file, "is not a glTF: the JSON is not an object");
   const Object root{json, file + ": glTF"};
@@ -359,6 +257,9 @@ void check_gltf(const Json& json, const std::string& file) {
   asset->text("version", Need::required);
   const std::string version = asset->json["version"].get<std::string>();
   if (version.rfind("2.", 0) != 0) asset->bad("version", "is not 2.x", asset->json["version"]);
+  asset->text("minVersion");
+  const std::string least = asset->json.value("minVersion", "2.0");
+  if (least != "2.0") asset->bad("minVersion", "asks for more than glTF 2.0", least);
   check_section(json, json, "buffers", file, check_buffer);
   check_section(json, json, "bufferViews", file, check_buffer_view);
   check_section(json, json, "accessors", file, check_accessor);
@@ -373,6 +274,8 @@ void check_gltf(const Json& json, const std::string& file) {
   }
   check_section(json, json, "nodes", file, check_node);
   check_section(json, json, "scenes", file, check_scene);
+  check_section(json, json, "animations", file, check_animation);
+  check_section(json, json, "skins", file, check_skin);
   root.index("scene", section_size(json, "scenes"));
   check_tree(json, file);
 }

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a .gltf or .glb: container, JSON, extensions, buffers. tinygltf turns the checked JSON into structs; files and
 // data URIs are read here, since tinygltf reads past the end of short buffers and loses the place of an error.
-#include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <set>
 
-#include "gltf.h"
+#include "gltf_lint.h"
+#include "meshopt.h"
 
 namespace chandelier::baker {
 namespace {
@@ -26,7 +24,7 @@ struct Chunks {
 };
 
 /// Splits a .glb; a .gltf is all JSON.
-Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& file) {
+Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& file, Warnings& warnings) {
   if (bytes.size() < 4 || u32_at(bytes, 0) != kGlbMagic) return {bytes, {}};
   if (bytes.size() < 20) fail(file, "truncated GLB (" + std::to_string(bytes.size()) + " bytes)");
   if (u32_at(bytes, 4) != 2) fail(file, "GLB version is not 2 (" + std::to_string(u32_at(bytes, 4)) + ")");
@@ -45,6 +43,10 @@ Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& f
     if (number == 0 && type != kJsonChunk) fail(where, "is not JSON (type " + std::to_string(type) + ")");
     if (number == 0) chunks.json = data;
     if (number == 1 && type == kBinChunk) chunks.bin = data;
+    if (size % 4 != 0) warnings.add(file, where.substr(file.size() + 2), "its length is not a multiple of 4");
+    if (number > 1 && (type == kBinChunk || type == kJsonChunk)) {
+      warnings.add(file, where.substr(file.size() + 2), "a second or misplaced chunk is ignored");
+    }
     at += 8 + size;
   }
   return chunks;
@@ -88,12 +90,25 @@ void for_each_primitive(JsonOrConst& json, Visit visit) {
   }
 }
 
+/// tinygltf refuses accessors of a type that it does not know, used or not: makes them SCALAR and returns them.
+std::vector<std::size_t> hide_unknown_types(Json& json) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < section_size(json, "accessors"); ++i) {
+    Json& type = json["accessors"][i]["type"];
+    if (is_accessor_type(type.get_ref<const std::string&>())) continue;
+    type = "SCALAR";
+    out.push_back(i);
+  }
+  return out;
+}
+
 /// tinygltf's structs for everything but files and the parts that the baker leaves out. It does not see indices: it
 /// refuses those that are all sparse.
 tinygltf::Model parse_model(const Json& json, const std::string& file) {
   Json reduced = json;
   for (const char* section : {"buffers", "images", "animations", "skins", "extras"}) reduced.erase(section);
   for_each_primitive(reduced, [](Json& primitive, std::size_t, std::size_t) { primitive.erase("indices"); });
+  const std::vector<std::size_t> untyped = hide_unknown_types(reduced);
   const std::string text = reduced.dump();
   if (text.size() > 0xFFFFFFFFu) fail(file, "JSON is too large (" + std::to_string(text.size()) + " bytes)");
   tinygltf::TinyGLTF parser;
@@ -103,150 +118,107 @@ tinygltf::Model parse_model(const Json& json, const std::string& file) {
     while (!error.empty() && error.back() == '\n') error.pop_back();
     fail(file, "is not a glTF: " + error);
   }
+  for (const std::size_t accessor : untyped) model.accessors[accessor].type = -1;
   for_each_primitive(json, [&](const Json& primitive, std::size_t mesh, std::size_t number) {
     model.meshes[mesh].primitives[number].indices = primitive.value("indices", -1);
   });
   return model;
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
+/// Holds nothing of its own: views on it are decoded from another (EXT_meshopt_compression).
+bool is_fallback(const Json& buffer) {
+  static const Json::json_pointer kExt("/extensions/EXT_meshopt_compression/fallback");
+  static const Json::json_pointer kKhr("/extensions/KHR_meshopt_compression/fallback");
+  return buffer.value(kExt, Json()) == true || buffer.value(kKhr, Json()) == true;
 }
 
-std::string percent_decode(const std::string& uri) {
-  std::string out;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0) {
-      out += static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2]));
-      i += 2;
-    } else {
-      out += uri[i];
-    }
+/// A buffer's bytes, or what is wrong with it: an error only where something reads it.
+void load_buffer(Gltf& gltf, std::size_t number, std::span<const std::uint8_t> bin) {
+  const Json& json = gltf.json["buffers"][number];
+  const std::string where = gltf.file + ": " + place(gltf.json, "buffers", number);
+  const auto length = json["byteLength"].get<std::uint64_t>();
+  Buffer& buffer = gltf.buffers[number];
+  if (is_fallback(json)) return;
+  if (json.contains("uri")) {
+    buffer.data = read_uri(gltf, json["uri"].get<std::string>(), where);
+  } else if (number == 0 && !bin.empty()) {
+    buffer.data = {bin, gltf.container.owner};
+  } else {
+    return;
   }
-  return out;
-}
-
-/// The start of a URI as a message shows it.
-std::string shown(const std::string& uri) {
-  return shortened(uri, 80);
-}
-
-std::vector<std::uint8_t> decode_base64(std::string_view text, const std::string& where) {
-  std::vector<std::uint8_t> out;
-  out.reserve(text.size() / 4 * 3 + 3);
-  std::uint32_t bits = 0;
-  int have = 0;
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  for (const char c : text) {
-    int value = -1;
-    if (c >= 'A' && c <= 'Z') value = c - 'A';
-    if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
-    if (c >= '0' && c <= '9') value = c - '0' + 52;
-    if (c == '+' || c == '-') value = 62;
-    if (c == '/' || c == '_') value = 63;
-    if (value < 0) fail(where, std::string("data URI is not base64 ('") + c + "')");
-    bits = bits << 6 | static_cast<std::uint32_t>(value);
-    have += 6;
-    if (have >= 8) {
-      have -= 8;
-      out.push_back(static_cast<std::uint8_t>(bits >> have));
-    }
+  if (buffer.data.bytes.size() < length) {
+    fail(where, "is shorter than its byteLength " + std::to_string(length) + " (" +
+                    std::to_string(buffer.data.bytes.size()) + " bytes)");
   }
-  return out;
-}
-
-std::vector<std::uint8_t> read_data_uri(const std::string& uri, const std::string& where) {
-  const std::size_t comma = uri.find(',');
-  if (comma == std::string::npos) fail(where, "data URI has no data (" + shown(uri) + ")");
-  const std::string_view header = std::string_view(uri).substr(0, comma);
-  const std::string body = percent_decode(uri.substr(comma + 1));
-  if (header.ends_with(";base64")) return decode_base64(body, where);
-  return {body.begin(), body.end()};
-}
-
-/// "http" of "http://…"; empty for a relative reference.
-std::string uri_scheme(const std::string& uri) {
-  const std::size_t end = uri.find_first_of(":/?#");
-  return end != std::string::npos && end > 0 && uri[end] == ':' ? uri.substr(0, end) : "";
+  buffer.data.bytes = buffer.data.bytes.first(length);
+  buffer.present = true;
 }
 
 void load_buffers(Gltf& gltf, std::span<const std::uint8_t> bin) {
-  const auto it = gltf.json.find("buffers");
-  if (it == gltf.json.end()) return;
-  for (std::size_t i = 0; i < it->size(); ++i) {
-    const Json& buffer = (*it)[i];
-    const std::string where = gltf.file + ": " + place(gltf.json, "buffers", i);
-    const auto length = buffer["byteLength"].get<std::uint64_t>();
-    std::vector<std::uint8_t> data;
-    if (buffer.contains("uri")) {
-      data = read_uri(gltf, buffer["uri"].get<std::string>(), where, length);
-    } else if (i == 0 && !bin.empty()) {
-      data.assign(bin.begin(), bin.end());
-    } else {
-      gltf.buffers.emplace_back();  // an error only where something reads it: extensions may stand in for it
-      continue;
+  gltf.buffers.resize(section_size(gltf.json, "buffers"));
+  for (std::size_t i = 0; i < gltf.buffers.size(); ++i) {
+    try {
+      load_buffer(gltf, i, bin);
+    } catch (const Error& error) {
+      gltf.buffers[i] = {{}, false, error.what()};
     }
-    if (data.size() < length) {
-      fail(where,
-           "is shorter than its byteLength " + std::to_string(length) + " (" + std::to_string(data.size()) + " bytes)");
-    }
-    data.resize(length);
-    gltf.buffers.push_back(std::move(data));
   }
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& where,
-                                    std::uint64_t most_bytes) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) fail(where, "no such file (" + shortened(path.string(), 400) + ")");
-  if (!std::filesystem::is_regular_file(status)) fail(where, "is not a file (" + shortened(path.string(), 400) + ")");
-  const std::uint64_t size = std::filesystem::file_size(path, error);
-  std::ifstream stream(path, std::ios::binary);
-  if (error || !stream)
-    fail(where, "cannot be read: " + std::string(std::strerror(errno)) + " (" + shortened(path.string(), 400) + ")");
-  std::vector<std::uint8_t> bytes(std::min(size, most_bytes));
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (static_cast<std::size_t>(stream.gcount()) != bytes.size())
-    fail(where, "cannot be read (" + shortened(path.string(), 400) + ")");
-  return bytes;
+void warn_of_buffers(const Gltf& gltf, Warnings& warnings) {
+  for (std::size_t i = 0; i < gltf.buffers.size(); ++i) {
+    const Buffer& buffer = gltf.buffers[i];
+    const std::string here = place(gltf.json, "buffers", i);
+    if (!buffer.error.empty()) warnings.add(gltf.file, here, "cannot be read, but nothing in the scene uses it");
+    if (buffer.error.empty() && !buffer.present && !is_fallback(gltf.json["buffers"][i])) {
+      warnings.add(gltf.file, here, "has no data: no URI, and no GLB chunk");
+    }
+  }
 }
 
-std::vector<std::uint8_t> read_uri(Gltf& gltf, const std::string& uri, const std::string& where,
-                                   std::uint64_t most_bytes) {
-  const std::string scheme = uri_scheme(uri);
-  if (scheme == "data") return read_data_uri(uri, where);
-  if (!scheme.empty()) fail(where, "URI is not relative to the file (" + shown(uri) + ")");
-  const std::string decoded = percent_decode(uri);
-  if (decoded.empty() || decoded.find('\0') != std::string::npos) fail(where, "URI names no file (" + shown(uri) + ")");
-  if (decoded[0] == '/' || decoded[0] == '\\') fail(where, "URI is not relative to the file (" + shown(uri) + ")");
-  const std::filesystem::path folder = gltf.path.parent_path();
-  std::error_code error;
-  const bool literal =
-      !std::filesystem::exists(folder / decoded, error) && std::filesystem::exists(folder / uri, error);
-  gltf.files_read.push_back(folder / (literal ? uri : decoded));
-  return read_file(gltf.files_read.back(), where, most_bytes);
+Bytes read_uri(Gltf& gltf, const std::string& uri, const std::string& where) {
+  UriTarget target = resolve_uri(gltf.path.parent_path(), uri, where);
+  if (target.file.empty()) return bytes_of(std::move(target.data));
+  gltf.files_read.push_back(target.file);
+  return map_file(target.file, where);
+}
+
+bool is_present(const Gltf& gltf, int buffer_view) {
+  const auto view = static_cast<std::size_t>(buffer_view);
+  if (gltf.decoded_views[view].present || !gltf.decoded_views[view].error.empty()) return true;
+  const Buffer& buffer = gltf.buffers[static_cast<std::size_t>(gltf.model.bufferViews[view].buffer)];
+  return buffer.present || !buffer.error.empty();
 }
 
 std::span<const std::uint8_t> view_bytes(const Gltf& gltf, int buffer_view, const std::string& where) {
+  const Buffer& decoded = gltf.decoded_views[static_cast<std::size_t>(buffer_view)];
+  if (!decoded.error.empty()) throw Error(decoded.error);
+  if (decoded.present) return decoded.data.bytes;
   const tinygltf::BufferView& view = gltf.model.bufferViews[static_cast<std::size_t>(buffer_view)];
-  const auto& buffer = gltf.buffers[static_cast<std::size_t>(view.buffer)];
-  if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
-    fail(where, "buffer view " + std::to_string(buffer_view) + " ends past buffer " + std::to_string(view.buffer) +
-                    " (" + std::to_string(view.byteOffset) + " + " + std::to_string(view.byteLength) + " of " +
-                    std::to_string(buffer.size()) + " bytes)");
+  return buffer_bytes(gltf, static_cast<std::size_t>(view.buffer), view.byteOffset, view.byteLength,
+                      where + ": buffer view " + std::to_string(buffer_view));
+}
+
+std::span<const std::uint8_t> buffer_bytes(const Gltf& gltf, std::size_t number, std::uint64_t offset,
+                                           std::uint64_t length, const std::string& what) {
+  const Buffer& buffer = gltf.buffers[number];
+  if (!buffer.error.empty()) throw Error(buffer.error);
+  const auto bytes = buffer.data.bytes;
+  if (offset > bytes.size() || length > bytes.size() - offset) {
+    throw Error(printable(what + " ends past buffer " + std::to_string(number) + " (" + std::to_string(offset) + " + " +
+                          std::to_string(length) + " of " + std::to_string(bytes.size()) + " bytes)"));
   }
-  return std::span(buffer).subspan(view.byteOffset, view.byteLength);
+  return bytes.subspan(offset, length);
 }
 
 void check_extensions(const Json& json, const std::string& file, Warnings& warnings) {
-  static const std::set<std::string> kKnown = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                               "KHR_mesh_quantization"};
+  static const std::set<std::string> kKnown = {
+      "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
+      "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_materials_emissive_strength",
+      "KHR_materials_unlit",        "KHR_mesh_quantization",   "KHR_meshopt_compression",
+      "KHR_texture_basisu",         "KHR_texture_transform"};
   std::set<std::string> required;
   for (const char* key : {"extensionsRequired", "extensionsUsed"}) {
     const auto it = json.find(key);
@@ -269,15 +241,18 @@ Gltf read_gltf(const std::filesystem::path& path, Warnings& warnings) {
   gltf.path = path;
   gltf.file = path.string();
   gltf.files_read = {path};
-  const std::vector<std::uint8_t> bytes = read_file(path, gltf.file);
-  const Chunks chunks = split_container(bytes, gltf.file);
+  gltf.container = map_file(path, gltf.file);
+  const Chunks chunks = split_container(gltf.container.bytes, gltf.file, warnings);
   if (chunks.json.empty()) fail(gltf.file, "is not a glTF: it is empty");
   gltf.json = parse_json(chunks.json, gltf.file);
+  if (chunks.json[0] == 0xEF) warnings.add(gltf.file, "JSON", "against glTF: it begins with a byte order mark");
   if (!gltf.json.is_object()) fail(gltf.file, "is not a glTF: the JSON is not an object");
   check_extensions(gltf.json, gltf.file, warnings);
   check_gltf(gltf.json, gltf.file);
+  lint_gltf(gltf.json, gltf.file, warnings);
   gltf.model = parse_model(gltf.json, gltf.file);
   load_buffers(gltf, chunks.bin);
+  decode_meshopt_views(gltf);
   return gltf;
 }
 

@@ -2,46 +2,178 @@
 // Appends one glTF file to the scene: nodes, and what they use of meshes and materials.
 #include "import.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
 #include "geometry.h"
 #include "gltf.h"
+#include "instancing.h"
 #include "lights.h"
 #include "materials.h"
+#include "motion.h"
 #include "nodes.h"
 
 namespace chandelier::baker {
 namespace {
 
-std::uint32_t add_mesh(const Gltf& gltf, std::size_t index, Materials& materials, Scene& scene, Warnings& warnings) {
-  const tinygltf::Mesh& in = gltf.model.meshes[index];
-  Mesh mesh;
-  for (std::size_t p = 0; p < in.primitives.size(); ++p) {
-    auto primitive = read_primitive(gltf, index, p, warnings);
-    if (!primitive) continue;
-    primitive->material = materials.use(in.primitives[p].material);
-    const Material& material = scene.materials[primitive->material];
-    primitive->needs_tangents = primitive->needs_tangents && material.normal.texture != kNone;
-    primitive->tangents_from_uv1 = material.normal.uv1;
-    mesh.primitives.push_back(std::move(*primitive));
-  }
-  scene.meshes.push_back(std::move(mesh));
-  return fit_u32(scene.meshes.size() - 1, "meshes");
+constexpr std::size_t kMostInstances = std::size_t{1} << 24;  // a few bytes of a file can stand for many
+
+/// What the scene shows of a glTF mesh.
+struct MeshUse {
+  std::uint32_t number = kNone;   // of Scene::meshes
+  bool skinned = false;           // by one node at least
+  std::uint32_t joint_count = 0;  // that its vertices ask for; 0 where not all of them have joints
+};
+
+struct Import {
+  Gltf& gltf;
+  Scene& scene;
+  Warnings& warnings;
+  Motion motion;
+  std::vector<MeshUse> meshes;          // by glTF's numbers
+  std::vector<std::size_t> mesh_order;  // the used ones, as the scene has them
+};
+
+std::uint32_t skin_of(const Import& in, const tinygltf::Node& node) {
+  return node.skin < 0 ? kNone : in.motion.skin[static_cast<std::size_t>(node.skin)];
 }
 
-bool draws_a_mesh(const tinygltf::Node& node, const PlacedNode& placed) {
-  return node.mesh >= 0 && !is_degenerate(placed.world_from_local);
+/// A mesh with a skin stands where its joints are, wherever its node is (glTF 2.0, 3.7.3.3): in the rest pose, as a
+/// whole, where the first joint puts it.
+glm::dmat4 place_of_mesh(const Import& in, const PlacedNode& placed) {
+  const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
+  if (skin_of(in, node) == kNone) return placed.world_from_local;
+  const glm::dmat4& by_joint = in.motion.placed[static_cast<std::size_t>(node.skin)];
+  return is_degenerate(by_joint) ? placed.world_from_local : by_joint;
+}
+
+/// Everything but meshes; notes which meshes are used.
+void visit_node(Import& in, const PlacedNode& placed) {
+  const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
+  const std::size_t lights = in.scene.lights.size(), cameras = in.scene.cameras.size();
+  add_light(in.gltf, placed, in.scene, in.warnings);
+  add_camera(in.gltf, placed, in.scene, in.warnings);
+  const std::uint32_t mover = in.motion.mover(placed.node);
+  if (in.scene.lights.size() > lights) {
+    in.scene.lights.back().node = mover;
+    in.scene.lights.back().dynamic = in.scene.lights.back().dynamic || mover != kNone;
+  }
+  if (in.scene.cameras.size() > cameras) in.scene.cameras.back().node = mover;
+  if (node.mesh < 0) return;
+  if (is_degenerate(place_of_mesh(in, placed))) {
+    in.warnings.add(in.gltf.file, place(in.gltf.json, "nodes", placed.node),
+                    "a mesh whose scale is zero or not within 1e-9 to 1e9 is skipped");
+    return;
+  }
+  MeshUse& use = in.meshes[static_cast<std::size_t>(node.mesh)];
+  use.skinned = use.skinned || skin_of(in, node) != kNone;
+  if (use.number != kNone) return;
+  use.number = fit_u32(in.scene.meshes.size() + in.mesh_order.size(), "meshes");
+  in.mesh_order.push_back(static_cast<std::size_t>(node.mesh));
 }
 
 /// Refuses geometry that is too large, before any of it takes memory.
-void check_size(const Gltf& gltf, const std::vector<PlacedNode>& nodes) {
+void check_size(const Import& in) {
   GeometrySize total;
-  std::vector<std::uint8_t> counted(gltf.model.meshes.size(), 0);
-  for (const PlacedNode& placed : nodes) {
-    const tinygltf::Node& node = gltf.model.nodes[placed.node];
-    if (!draws_a_mesh(node, placed)) continue;
-    const auto mesh = static_cast<std::size_t>(node.mesh);
-    if (counted[mesh]) continue;
-    counted[mesh] = 1;
-    for (std::size_t p = 0; p < gltf.model.meshes[mesh].primitives.size(); ++p) add_size(gltf, mesh, p, total);
+  for (const std::size_t mesh : in.mesh_order) {
+    for (std::size_t p = 0; p < in.gltf.model.meshes[mesh].primitives.size(); ++p) add_size(in.gltf, mesh, p, total);
+  }
+}
+
+std::vector<std::vector<ReadPrimitive>> read_primitives(const Import& in) {
+  std::vector<std::vector<ReadPrimitive>> out(in.mesh_order.size());
+  std::vector<std::pair<std::size_t, std::size_t>> jobs;  // mesh in order, primitive
+  for (std::size_t m = 0; m < out.size(); ++m) {
+    out[m].resize(in.gltf.model.meshes[in.mesh_order[m]].primitives.size());
+    for (std::size_t p = 0; p < out[m].size(); ++p) jobs.emplace_back(m, p);
+  }
+  tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+    const auto [m, p] = jobs[i];
+    const std::size_t mesh = in.mesh_order[m];
+    out[m][p] = read_primitive(in.gltf, mesh, p, in.meshes[mesh].skinned);
+  });
+  return out;
+}
+
+/// The joints that a mesh asks for; 0 and no joints at all where not every vertex has some.
+std::uint32_t settle_joints(Mesh& mesh) {
+  std::uint32_t count = 0;
+  const bool all = std::all_of(mesh.primitives.begin(), mesh.primitives.end(), [](const Primitive& primitive) {
+    return primitive.skin_vertices.size() == primitive.vertices.size();
+  });
+  for (Primitive& primitive : mesh.primitives) {
+    if (!all) primitive.skin_vertices.clear();
+    for (const SkinVertex& vertex : primitive.skin_vertices) {
+      count = std::max(count, 1u + *std::max_element(vertex.joints.begin(), vertex.joints.end()));
+    }
+  }
+  return count;
+}
+
+void add_mesh(Import& in, std::size_t index, std::vector<ReadPrimitive>&& read, Materials& materials) {
+  Mesh mesh;
+  for (std::size_t p = 0; p < read.size(); ++p) {
+    for (const std::string& warning : read[p].warnings) {
+      in.warnings.add(in.gltf.file, place_of_primitive(in.gltf, index, p), warning);
+    }
+    if (!read[p].error.empty()) throw Error(read[p].error);
+    if (!read[p].primitive) continue;
+    Primitive& primitive = *read[p].primitive;
+    primitive.material = materials.use(in.gltf.model.meshes[index].primitives[p].material);
+    const Material& material = in.scene.materials[primitive.material];
+    primitive.needs_tangents = primitive.needs_tangents && material.normal.texture != kNone;
+    primitive.tangents_from_uv1 = material.normal.uv1;
+    mesh.primitives.push_back(std::move(primitive));
+  }
+  if (in.meshes[index].skinned) in.meshes[index].joint_count = settle_joints(mesh);
+  in.scene.meshes.push_back(std::move(mesh));
+}
+
+/// The node's skin, where its mesh has joints for it. Throws Error where the mesh asks for joints that it lacks.
+std::uint32_t checked_skin(const Import& in, const tinygltf::Node& node, const std::string& here) {
+  const std::uint32_t skin = skin_of(in, node);
+  if (skin == kNone) return kNone;
+  const std::uint32_t asked = in.meshes[static_cast<std::size_t>(node.mesh)].joint_count;
+  const std::size_t joints = in.scene.skins[skin].joints.size();
+  if (asked == 0) {
+    in.warnings.add(in.gltf.file, here, "a skin is ignored: its mesh has vertices without joints");
+    return kNone;
+  }
+  if (asked > joints) {
+    fail(in.gltf.file + ": " + here, "its mesh asks for joints that its skin lacks, which has " +
+                                         std::to_string(joints) + " (" + std::to_string(asked - 1) + ")");
+  }
+  return skin;
+}
+
+void add_instances(Import& in, const PlacedNode& placed) {
+  const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
+  if (node.mesh < 0) return;
+  const MeshUse& mesh = in.meshes[static_cast<std::size_t>(node.mesh)];
+  if (is_degenerate(place_of_mesh(in, placed))) return;
+  const std::string here = place(in.gltf.json, "nodes", placed.node), where = in.gltf.file + ": " + here;
+  MeshInstance instance{node.name, where, placed.world_from_local, mesh.number, in.motion.mover(placed.node)};
+  instance.skin = checked_skin(in, node, here);
+  if (instance.skin != kNone) instance.world_from_local = place_of_mesh(in, placed);
+  const auto places = read_instances(in.gltf, placed.node);
+  if (!places || instance.skin != kNone) {
+    if (places) in.warnings.add(in.gltf.file, here, "EXT_mesh_gpu_instancing on a mesh with a skin is ignored");
+    in.scene.instances.push_back(std::move(instance));
+    return;
+  }
+  if (in.scene.instances.size() + places->size() > kMostInstances) {
+    fail(where, "more than " + std::to_string(kMostInstances) + " instances (" +
+                    std::to_string(in.scene.instances.size() + places->size()) + ")");
+  }
+  for (const glm::dmat4& each : *places) {
+    instance.world_from_local = placed.world_from_local * each;
+    check_place(instance.world_from_local, where);
+    if (is_degenerate(instance.world_from_local)) {
+      in.warnings.add(in.gltf.file, here, "instances whose scale is zero or not within 1e-9 to 1e9 are skipped");
+      continue;
+    }
+    in.scene.instances.push_back(instance);
   }
 }
 
@@ -50,27 +182,19 @@ void check_size(const Gltf& gltf, const std::vector<PlacedNode>& nodes) {
 void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings) {
   Gltf gltf = read_gltf(path, warnings);
   scene.sources.push_back(path.filename().string());
-  Materials materials(gltf, scene, warnings);
-  std::vector<std::uint32_t> mesh_numbers(gltf.model.meshes.size(), kNone);
   const std::vector<PlacedNode> nodes = place_nodes(gltf);
-  check_size(gltf, nodes);
-  for (const PlacedNode& placed : nodes) {
-    const tinygltf::Node& node = gltf.model.nodes[placed.node];
-    const std::string here = place(gltf.json, "nodes", placed.node);
-    add_light(gltf, placed, scene, warnings);
-    add_camera(gltf, placed, scene, warnings);
-    if (node.mesh < 0) continue;
-    if (node.skin >= 0)
-      warnings.add(gltf.file, here, "a skin is ignored: the mesh is baked unposed, where its node is");
-    if (!draws_a_mesh(node, placed)) {
-      warnings.add(gltf.file, here, "a mesh whose scale is zero or not within 1e-9 to 1e9 is skipped");
-      continue;
-    }
-    std::uint32_t& mesh = mesh_numbers[static_cast<std::size_t>(node.mesh)];
-    if (mesh == kNone) mesh = add_mesh(gltf, static_cast<std::size_t>(node.mesh), materials, scene, warnings);
-    scene.instances.push_back({node.name, gltf.file + ": " + here, placed.world_from_local, mesh});
+  Motion motion = add_motion(gltf, nodes, scene, warnings);
+  Import in{gltf, scene, warnings, std::move(motion), std::vector<MeshUse>(gltf.model.meshes.size()), {}};
+  for (const PlacedNode& placed : nodes) visit_node(in, placed);
+  check_size(in);
+  std::vector<std::vector<ReadPrimitive>> primitives = read_primitives(in);
+  Materials materials(gltf, scene, warnings);
+  for (std::size_t m = 0; m < primitives.size(); ++m) {
+    add_mesh(in, in.mesh_order[m], std::move(primitives[m]), materials);
   }
+  for (const PlacedNode& placed : nodes) add_instances(in, placed);
   materials.warn();
+  warn_of_buffers(gltf, warnings);
   scene.files_read.insert(scene.files_read.end(), gltf.files_read.begin(), gltf.files_read.end());
 }
 

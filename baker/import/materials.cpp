@@ -3,7 +3,10 @@
 #include "materials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <string_view>
 
 namespace chandelier::baker {
 namespace {
@@ -46,6 +49,23 @@ double emissive_strength(const Json& material) {
   return material.value(kPath, 1.0);
 }
 
+/// KHR_texture_transform: translation · rotation · scale, where the rotation goes counter-clockwise as v points down.
+UvTransform uv_transform(const Json& json) {
+  const auto offset = json.value("offset", std::array<double, 2>{0, 0});
+  const auto scale = json.value("scale", std::array<double, 2>{1, 1});
+  const double angle = json.value("rotation", 0.0), c = std::cos(angle), s = std::sin(angle);
+  return {glm::vec3(c * scale[0], s * scale[1], offset[0]), glm::vec3(-s * scale[0], c * scale[1], offset[1])};
+}
+
+/// The extension that brings images of this format, or nullptr for others.
+const char* extension_of_format(const std::vector<std::uint8_t>& bytes) {
+  const auto starts_with = [&](std::string_view magic) {
+    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+  };
+  if (starts_with("\xABKTX 20")) return "KHR_texture_basisu";
+  return starts_with("RIFF") ? "EXT_texture_webp" : nullptr;
+}
+
 }  // namespace
 
 std::uint32_t Materials::use(int material) {
@@ -76,14 +96,14 @@ std::uint32_t Materials::add_material(int index) {
     out.normal_scale = static_cast<float>(in.normalTexture.scale);
     out.occlusion_strength = std::clamp(static_cast<float>(in.occlusionTexture.strength), 0.0f, 1.0f);
     out.double_sided = in.doubleSided;
-    const auto use = [&](const auto& info, const char* what) {
-      return use_texture(info.index, info.texCoord, info.extensions, here + ", " + what);
-    };
-    out.base_color = use(pbr.baseColorTexture, "baseColorTexture");
-    out.metallic_roughness = use(pbr.metallicRoughnessTexture, "metallicRoughnessTexture");
-    out.normal = use(in.normalTexture, "normalTexture");
-    out.occlusion = use(in.occlusionTexture, "occlusionTexture");
-    out.emissive_map = use(in.emissiveTexture, "emissiveTexture");
+    const Json& json = gltf_.json["materials"][static_cast<std::size_t>(index)];
+    out.unlit = json.contains(Json::json_pointer("/extensions/KHR_materials_unlit"));
+    const Json metallic_roughness = json.value("pbrMetallicRoughness", Json::object());
+    out.base_color = use_texture(metallic_roughness, "baseColorTexture", in.alphaMode == "MASK", here);
+    out.metallic_roughness = use_texture(metallic_roughness, "metallicRoughnessTexture", false, here);
+    out.normal = use_texture(json, "normalTexture", false, here);
+    out.occlusion = use_texture(json, "occlusionTexture", false, here);
+    out.emissive_map = use_texture(json, "emissiveTexture", false, here);
     if (in.alphaMode != "OPAQUE" && in.alphaMode != "MASK" && in.alphaMode != "BLEND") {
       fail(where + ", alphaMode", "is not OPAQUE, MASK or BLEND (" + shortened(in.alphaMode, 40) + ")");
     }
@@ -95,29 +115,47 @@ std::uint32_t Materials::add_material(int index) {
   return fit_u32(scene_.materials.size() - 1, "materials");
 }
 
-TextureUse Materials::use_texture(int texture, int tex_coord, const tinygltf::ExtensionMap& extensions,
-                                  const std::string& where) {
-  if (texture < 0) return {};
-  if (extensions.contains("KHR_texture_transform")) {
-    warnings_.add(gltf_.file, where, "KHR_texture_transform is ignored");
-  }
-  if (gltf_.model.textures[static_cast<std::size_t>(texture)].source < 0) {
-    warnings_.add(gltf_.file, where, "texture has no PNG or JPEG image and is left out");
-    return {};
-  }
-  if (tex_coord > 1) {
+TextureUse Materials::use_texture(const Json& owner, const char* key, bool alpha, const std::string& here) {
+  const auto info = owner.find(key);
+  if (info == owner.end()) return {};
+  const std::string where = here + ", " + key;
+  const auto number = (*info)["index"].get<std::size_t>();
+  const auto image = image_of(gltf_.json["textures"][number], alpha, where);
+  if (!image) return {};
+  static const Json::json_pointer kTransform("/extensions/KHR_texture_transform");
+  const Json transform = info->contains(kTransform) ? (*info)[kTransform] : Json::object();
+  const int coordinates = transform.value("texCoord", info->value("texCoord", 0));
+  if (coordinates > 1) {
     warnings_.add(gltf_.file, where, "asks for a texture coordinate set above TEXCOORD_1 and is left out");
     return {};
   }
-  const auto [it, added] = textures_.try_emplace(texture, 0);
-  if (added) it->second = add_texture(texture);
-  return {it->second, tex_coord == 1};
+  const auto [it, added] = textures_.try_emplace(number, 0);
+  if (added) it->second = add_texture(number, *image);
+  return {it->second, coordinates == 1, uv_transform(transform)};
 }
 
-std::uint32_t Materials::add_texture(int index) {
-  const tinygltf::Texture& in = gltf_.model.textures[static_cast<std::size_t>(index)];
+std::optional<std::uint32_t> Materials::image_of(const Json& texture, bool alpha, const std::string& where) {
+  std::string lacking;  // the extension whose image is left out
+  for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp"}) {
+    if (texture.contains("extensions") && texture["extensions"].contains(name)) lacking = name;
+  }
+  if (texture.contains("source")) {
+    const std::uint32_t image = use_image(texture["source"].get<std::size_t>());
+    const char* extension = extension_of_format(scene_.images[image].bytes);
+    if (!extension) return image;
+    lacking = extension;
+  }
+  const std::string what =
+      lacking.empty() ? "texture has no image" : "has no PNG or JPEG image but only that of " + lacking;
+  if (alpha && !lacking.empty()) fail(gltf_.file + ": " + where, what + ", whose alpha would make shadows");
+  warnings_.add(gltf_.file, where, what + " and is left out");
+  return std::nullopt;
+}
+
+std::uint32_t Materials::add_texture(std::size_t index, std::uint32_t image) {
+  const tinygltf::Texture& in = gltf_.model.textures[index];
   Texture out;
-  out.image = use_image(in.source);
+  out.image = image;
   if (in.sampler >= 0) {
     const auto number = static_cast<std::size_t>(in.sampler);
     const std::string where = gltf_.file + ": " + place(gltf_.json, "samplers", number);
@@ -131,10 +169,9 @@ std::uint32_t Materials::add_texture(int index) {
   return fit_u32(scene_.textures.size() - 1, "textures");
 }
 
-std::uint32_t Materials::use_image(int index) {
-  const auto [it, added] = images_.try_emplace(index, 0);
+std::uint32_t Materials::use_image(std::size_t number) {
+  const auto [it, added] = images_.try_emplace(number, 0);
   if (!added) return it->second;
-  const auto number = static_cast<std::size_t>(index);
   const Json& in = gltf_.json["images"][number];
   EncodedImage out;
   out.where = gltf_.file + ": " + place(gltf_.json, "images", number);
@@ -144,7 +181,8 @@ std::uint32_t Materials::use_image(int index) {
     const bool embedded = uri.rfind("data:", 0) == 0;
     if (out.name.empty() && !embedded) out.name = uri;
     if (!embedded) out.where += " (" + shortened(uri, 80) + ")";
-    out.bytes = read_uri(gltf_, uri, out.where);
+    const Bytes file = read_uri(gltf_, uri, out.where);
+    out.bytes.assign(file.bytes.begin(), file.bytes.end());
   } else if (in.contains("bufferView")) {
     const auto bytes = view_bytes(gltf_, in["bufferView"].get<int>(), out.where);
     out.bytes.assign(bytes.begin(), bytes.end());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "../scene.h"
 #include "gltf.h"
@@ -21,15 +22,18 @@ class Materials {
 
  private:
   std::uint32_t add_material(int material);
-  TextureUse use_texture(int texture, int tex_coord, const tinygltf::ExtensionMap& extensions,
-                         const std::string& where);
-  std::uint32_t use_image(int image);
-  std::uint32_t add_texture(int texture);
+  /// The texture that `owner` names under `key`; `alpha`: its alpha decides where there is a surface.
+  TextureUse use_texture(const Json& owner, const char* key, bool alpha, const std::string& here);
+  /// The image of a texture, where it has one that can be read.
+  std::optional<std::uint32_t> image_of(const Json& texture, bool alpha, const std::string& where);
+  std::uint32_t use_image(std::size_t image);
+  std::uint32_t add_texture(std::size_t texture, std::uint32_t image);
 
   Gltf& gltf_;
   Scene& scene_;
   Warnings& warnings_;
-  std::map<int, std::uint32_t> materials_, textures_, images_;
+  std::map<int, std::uint32_t> materials_;
+  std::map<std::size_t, std::uint32_t> textures_, images_;
   std::size_t blended_ = 0;
 };
 

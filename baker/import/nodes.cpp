@@ -49,7 +49,9 @@ std::vector<std::size_t> root_nodes(const Gltf& gltf) {
   return roots;
 }
 
-void check_finite(const glm::dmat4& m, const std::string& where) {
+}  // namespace
+
+void check_place(const glm::dmat4& m, const std::string& where) {
   for (int i = 0; i < 16; ++i) {
     const double value = m[i / 4][i % 4];
     if (!std::isfinite(static_cast<float>(value))) {
@@ -57,8 +59,6 @@ void check_finite(const glm::dmat4& m, const std::string& where) {
     }
   }
 }
-
-}  // namespace
 
 glm::dvec3 world_direction(const glm::dmat4& world, const glm::dvec3& local) {
   const glm::dvec3 direction = glm::dmat3(world) * local;
@@ -83,11 +83,12 @@ std::vector<PlacedNode> place_nodes(const Gltf& gltf) {
     if (seen[placed.node]) fail(where, "is in the scene twice");
     seen[placed.node] = 1;
     const tinygltf::Node& node = gltf.model.nodes[placed.node];
-    placed.world_from_local = placed.world_from_local * local_transform(node, where);
-    check_finite(placed.world_from_local, where);
+    placed.parent_from_local = local_transform(node, where);
+    placed.world_from_local = placed.world_from_local * placed.parent_from_local;
+    check_place(placed.world_from_local, where);
     out.push_back(placed);
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it) {
-      open.push_back({static_cast<std::size_t>(*it), placed.world_from_local});
+      open.push_back({static_cast<std::size_t>(*it), placed.world_from_local, glm::dmat4(1), placed.node});
     }
   }
   return out;
@@ -111,6 +112,11 @@ void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnin
   const std::string here = place(gltf.json, "nodes", placed.node);
   if (in.type != "perspective") {
     warnings.add(gltf.file, here, "an orthographic camera is skipped");
+    return;
+  }
+  const double yfov = in.perspective.yfov;
+  if (!(yfov >= 1e-4 && yfov <= 3.1)) {  // a pack's limits; a straight angle would be pi
+    warnings.add(gltf.file, here, "a camera whose yfov is not within 0.0001 to 3.1 is skipped");
     return;
   }
   const glm::dvec3 forward = world_direction(placed.world_from_local, {0, 0, -1});

@@ -10,6 +10,8 @@ namespace chandelier::baker {
 struct PlacedNode {
   std::size_t node;
   glm::dmat4 world_from_local;
+  glm::dmat4 parent_from_local{1};
+  std::size_t parent = SIZE_MAX;  // the node above it
 };
 
 /// The nodes of the default scene (of the first where none is named; all roots where there are no scenes), parents
@@ -24,6 +26,9 @@ glm::dvec3 world_direction(const glm::dmat4& world, const glm::dvec3& local);
 
 /// The node's name, else the light's or camera's own.
 std::string name_of(const tinygltf::Node& node, const std::string& own);
+
+/// Throws Error where a float cannot hold the transform.
+void check_place(const glm::dmat4& world_from_local, const std::string& where);
 
 /// Whether the transform squashes space flat, so that normals and winding have no meaning, or scales an axis by less
 /// than 1e-9 or more than 1e9, so that who draws it in floats would find it flat or infinite.

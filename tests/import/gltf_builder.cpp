@@ -21,11 +21,28 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
   return out;
 }
 
+int GltfBuilder::add_positions(const std::vector<float>& xyz) {
+  const int accessor = add_floats(xyz, "VEC3", 3);
+  glm::vec3 low(xyz.at(0), xyz.at(1), xyz.at(2)), high = low;
+  for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) {
+    const glm::vec3 p(xyz[i], xyz[i + 1], xyz[i + 2]);
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  json["accessors"][accessor]["min"] = {low.x, low.y, low.z};
+  json["accessors"][accessor]["max"] = {high.x, high.y, high.z};
+  return accessor;
+}
+
 std::string GltfBuilder::text() const {
   Json whole = json;
   if (!bytes.empty()) {
     whole["buffers"] = {
         {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+  }
+  if (fallback_bytes) {
+    const Json fallback = {{"EXT_meshopt_compression", {{"fallback", true}}}};
+    whole["buffers"].push_back({{"byteLength", fallback_bytes}, {"extensions", fallback}});
   }
   return whole.dump(1);
 }

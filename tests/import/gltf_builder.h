@@ -24,6 +24,7 @@ constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort 
 struct GltfBuilder {
   Json json = {{"asset", {{"version", "2.0"}}}};
   std::vector<std::uint8_t> bytes;  // the buffer
+  std::size_t fallback_bytes = 0;   // of a second one, without data: that of views that are compressed
 
   /// Appends data, aligned to 4 bytes, as a buffer view; returns its number.
   template <typename T>
@@ -48,7 +49,8 @@ struct GltfBuilder {
   int add_floats(const std::vector<float>& data, const char* type, std::size_t components) {
     return add_accessor(data, kFloat, type, data.size() / components);
   }
-  int add_positions(const std::vector<float>& xyz) { return add_floats(xyz, "VEC3", 3); }
+  /// With the bounds that glTF asks for, where they are numbers.
+  int add_positions(const std::vector<float>& xyz);
   int add_indices(const std::vector<std::uint16_t>& indices) {
     return add_accessor(indices, kUnsignedShort, "SCALAR", indices.size());
   }

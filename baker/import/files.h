@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files and URIs. Large files are mapped, not read: their bytes are looked at where they lie in the page cache. Who
+// cuts a file short while it is mapped ends the bake by SIGBUS.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace chandelier::baker {
+
+/// Bytes and what keeps them.
+struct Bytes {
+  std::span<const std::uint8_t> bytes;
+  std::shared_ptr<const void> owner;
+};
+
+Bytes bytes_of(std::vector<std::uint8_t>&& data);
+
+/// A regular file, mapped. Throws Error.
+Bytes map_file(const std::filesystem::path& path, const std::string& where);
+
+/// What a URI beside `folder` names: a file, or the bytes of a data URI.
+struct UriTarget {
+  std::filesystem::path file;  // empty for a data URI
+  std::vector<std::uint8_t> data;
+};
+
+/// Throws Error where the URI is no relative reference, or its data is not base64.
+UriTarget resolve_uri(const std::filesystem::path& folder, const std::string& uri, const std::string& where);
+
+}  // namespace chandelier::baker

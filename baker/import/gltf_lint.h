@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Breaches of glTF 2.0 that do the bake no harm, because nothing that it makes depends on them: each is a warning.
+#pragma once
+
+#include "json_object.h"
+
+namespace chandelier::baker {
+
+/// Says what a checked glTF does against the specification.
+void lint_gltf(const Json& json, const std::string& file, Warnings& warnings);
+
+/// What the two halves of it share.
+struct Lint {
+  const Json& json;
+  const std::string& file;
+  Warnings& warnings;
+
+  void say(const char* section, std::size_t index, const std::string& what) const {
+    warnings.add(file, place(json, section, index), "against glTF: " + what);
+  }
+  const Json& entry(const char* section, std::size_t index) const { return json[section][index]; }
+  /// The buffer view of an accessor, or an empty object.
+  const Json& view_of(const Json& accessor) const;
+};
+
+/// Bytes of one element of a checked accessor; 0 for a type that glTF lacks.
+std::uint64_t element_bytes(const Json& accessor);
+
+/// A whole number under a key, or another where there is none.
+std::uint64_t whole(const Json& object, const char* key, std::uint64_t otherwise);
+
+void lint_meshes(const Lint& lint);
+
+}  // namespace chandelier::baker

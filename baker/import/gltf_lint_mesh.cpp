@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes, drawn or not: attributes, indices, morph targets.
+#include <algorithm>
+#include <set>
+
+#include "gltf_lint.h"
+
+namespace chandelier::baker {
+namespace {
+
+constexpr std::uint64_t kVertices = 34962, kIndices = 34963;  // a buffer view's target
+
+bool is_known_attribute(const std::string& name) {
+  if (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name[0] == '_') return true;
+  const std::size_t line = name.rfind('_');
+  if (line == std::string::npos || line + 1 == name.size()) return false;
+  static const std::set<std::string> kSets = {"TEXCOORD", "COLOR", "JOINTS", "WEIGHTS"};
+  const std::string digits = name.substr(line + 1);
+  return kSets.contains(name.substr(0, line)) && digits.find_first_not_of("0123456789") == std::string::npos &&
+         (digits == "0" || digits[0] != '0');
+}
+
+/// Whether the sets of an attribute are numbered without gaps.
+bool is_numbered_on(const std::string& name, const Json& attributes) {
+  const std::size_t line = name.rfind('_');
+  if (name[0] == '_' || line == std::string::npos || line + 1 == name.size()) return true;
+  const std::string digits = name.substr(line + 1);
+  if (digits.size() > 4 || digits.find_first_not_of("0123456789") != std::string::npos || digits == "0") return true;
+  return attributes.contains(name.substr(0, line + 1) + std::to_string(std::stoi(digits) - 1));
+}
+
+struct MeshLint {
+  const Lint& lint;
+  std::size_t mesh;
+  void say(const std::string& what) const { lint.say("meshes", mesh, what); }
+
+  void attribute(const std::string& name, const Json& accessor, bool quantized) const {
+    const Json& view = lint.view_of(accessor);
+    const std::uint64_t type = whole(accessor, "componentType", 0);
+    if (!is_known_attribute(name)) say("attribute '" + shortened(name, 40) + "' is unknown");
+    if (type == 5125) say("an attribute is of 32-bit integers");
+    if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) say("POSITION has no bounds");
+    const bool floats = type == 5126 && accessor["type"] == "VEC3" && !accessor.value("normalized", false);
+    if ((name == "POSITION" || name == "NORMAL") && !quantized && !floats) say("an attribute is not of three floats");
+    if (whole(accessor, "byteOffset", 0) % 4 != 0 || element_bytes(accessor) % 4 != 0) {
+      if (whole(view, "byteStride", element_bytes(accessor)) % 4 != 0 || whole(accessor, "byteOffset", 0) % 4 != 0) {
+        say("an attribute is not aligned to 4 bytes");
+      }
+    }
+    if (whole(view, "target", kVertices) != kVertices) say("an attribute's buffer view is of another target");
+  }
+
+  void indices(const Json& accessor) const {
+    const std::uint64_t type = whole(accessor, "componentType", 0);
+    const bool right = accessor["type"] == "SCALAR" && (type == 5121 || type == 5123 || type == 5125);
+    if (!right || accessor.value("normalized", false)) say("indices are not of unsigned integers");
+    if (lint.view_of(accessor).contains("byteStride")) say("indices have a byteStride");
+    if (whole(lint.view_of(accessor), "target", kIndices) != kIndices) say("indices' buffer view is of another target");
+  }
+
+  /// One morph target; the base mesh is baked without them.
+  void target(const Json& target, const Json& attributes) const {
+    if (!target.is_object()) return say("a morph target is no object");
+    for (const auto& [name, value] : target.items()) {
+      if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= section_size(lint.json, "accessors")) {
+        say("a morph target points past the accessors");
+        continue;
+      }
+      const Json& accessor = lint.entry("accessors", value.get<std::size_t>());
+      if (!is_known_attribute(name)) say("a morph target has an unknown attribute");
+      if (!attributes.contains(name)) {
+        say("a morph target has an attribute that its base lacks");
+      } else if (accessor["count"] != lint.entry("accessors", attributes[name].get<std::size_t>())["count"]) {
+        say("a morph target has another count than its base");
+      }
+      if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) say("POSITION has no bounds");
+      if (whole(lint.view_of(accessor), "target", kVertices) != kVertices) {
+        say("an attribute's buffer view is of another target");
+      }
+    }
+  }
+
+  void primitive(const Json& primitive, bool quantized, std::vector<std::uint64_t>& shared) const {
+    const Json& attributes = primitive["attributes"];
+    std::set<std::uint64_t> counts;
+    if (attributes.empty()) say("a primitive has no attributes");
+    for (const auto& [name, value] : attributes.items()) {
+      const Json& accessor = lint.entry("accessors", value.get<std::size_t>());
+      counts.insert(whole(accessor, "count", 0));
+      attribute(name, accessor, quantized);
+      if (!is_numbered_on(name, attributes)) say("attributes' sets are not numbered from 0");
+      if (accessor.contains("bufferView"))
+        shared.push_back(whole(accessor, "bufferView", 0) << 32 | value.get<std::uint64_t>());
+    }
+    if (counts.size() > 1) say("a primitive's attributes have different counts");
+    if (attributes.contains("JOINTS_0") != attributes.contains("WEIGHTS_0"))
+      say("JOINTS_0 and WEIGHTS_0 do not come together");
+    if (primitive.contains("indices")) indices(lint.entry("accessors", primitive["indices"].get<std::size_t>()));
+    if (!primitive.contains("targets") || !primitive["targets"].is_array()) return;
+    for (const Json& each : primitive["targets"]) target(each, attributes);
+  }
+};
+
+/// Accessors of vertices in one view need its stride. `shared`: buffer view and accessor, of each attribute.
+void lint_strides(const Lint& lint, std::vector<std::uint64_t>& shared) {
+  std::sort(shared.begin(), shared.end());
+  shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
+  for (std::size_t i = 1; i < shared.size(); ++i) {
+    const std::uint64_t view = shared[i] >> 32;
+    if (view != shared[i - 1] >> 32 || lint.entry("bufferViews", view).contains("byteStride")) continue;
+    lint.say("bufferViews", view, "it has several attributes and no byteStride");
+  }
+}
+
+}  // namespace
+
+void lint_meshes(const Lint& lint) {
+  std::vector<std::uint64_t> shared;
+  const auto used = lint.json.find("extensionsUsed");
+  const bool quantized =
+      used != lint.json.end() && std::find(used->begin(), used->end(), "KHR_mesh_quantization") != used->end();
+  for (std::size_t m = 0; m < section_size(lint.json, "meshes"); ++m) {
+    const Json& mesh = lint.entry("meshes", m);
+    const MeshLint each{lint, m};
+    std::set<std::size_t> target_counts;
+    for (const Json& primitive : mesh["primitives"]) {
+      each.primitive(primitive, quantized, shared);
+      target_counts.insert(section_size(primitive, "targets"));
+    }
+    if (target_counts.size() > 1) each.say("its primitives have different numbers of morph targets");
+    const bool weights = mesh.contains("weights") && mesh["weights"].is_array();
+    if (weights && !target_counts.contains(mesh["weights"].size())) each.say("it has not one weight per morph target");
+  }
+  lint_strides(lint, shared);
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// EXT_mesh_gpu_instancing: one node, many places.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "gltf.h"
+
+namespace chandelier::baker {
+
+/// Where the node's mesh stands, in the node's own space; nothing for a node without the extension. Throws Error.
+std::optional<std::vector<glm::dmat4>> read_instances(const Gltf& gltf, std::size_t node);
+
+}  // namespace chandelier::baker

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// A JSON object and where it is: each member function checks one of its keys, and fails with the place and the value.
+#pragma once
+
+#include <optional>
+
+#include "gltf.h"
+
+namespace chandelier::baker {
+
+enum class Need { optional, required };
+
+/// A value as a message shows it.
+std::string shown(const Json& value);
+
+/// The entries of a glTF array; 0 where there is none.
+std::size_t section_size(const Json& json, const char* section);
+
+constexpr double kBig = 3e38;  // every number must fit a float
+constexpr std::uint64_t kMostBytes = 1ull << 53;
+constexpr std::uint64_t kMostInt = 0x7FFFFFFF;
+
+struct Object {
+  const Json& json;  // the object
+  std::string where;
+
+  [[noreturn]] void bad(const char* key, const std::string& what, const Json& value) const;
+  const Json* find(const char* key, Need need = Need::optional) const;
+  void text(const char* key, Need need = Need::optional) const;
+  void boolean(const char* key) const;
+  void integer(const char* key, std::uint64_t least, std::uint64_t most, Need need = Need::optional) const;
+  void number(const char* key, double least, double most, Need need = Need::optional) const;
+  void numbers(const char* key, std::size_t count, double least, double most) const;
+  void index(const char* key, std::size_t count, Need need = Need::optional) const;
+  void indices(const char* key, std::size_t count, Need need = Need::optional) const;
+  std::optional<Object> object(const char* key, Need need = Need::optional) const;
+  /// This object's data of an extension.
+  std::optional<Object> extension(const char* name) const;
+  /// The objects of an array.
+  std::vector<Object> objects(const char* key, Need need = Need::optional) const;
+
+  void check_number(const char* key, const Json& value, double least, double most) const;
+  void check_index(const char* key, const Json& value, std::size_t count) const;
+};
+
+}  // namespace chandelier::baker

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What moves: animated nodes, joints, and what hangs from them.
+#pragma once
+
+#include "nodes.h"
+
+namespace chandelier::baker {
+
+/// By glTF's numbers of nodes and skins.
+struct Motion {
+  std::vector<std::uint32_t> node;  // of Scene::nodes, or kNone
+  std::vector<std::uint8_t> moves;  // whether an animation moves it or a node above it
+  std::vector<std::uint32_t> skin;  // of Scene::skins, or kNone
+  std::vector<glm::dmat4> placed;   // each skin's: from its mesh to the world, where its first joint puts it
+
+  /// The number of a node that moves, or kNone.
+  std::uint32_t mover(std::size_t gltf_node) const { return moves[gltf_node] ? node[gltf_node] : kNone; }
+};
+
+/// Appends animations, the skins that are used and the nodes that both need. Throws Error.
+Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene& scene, Warnings& warnings);
+
+}  // namespace chandelier::baker

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// A primitive's attributes, put together into vertices.
+#pragma once
+
+#include "../scene.h"
+#include "draco.h"
+
+namespace chandelier::baker {
+
+/// What the attributes of a primitive are read from.
+struct VertexSource {
+  const Gltf& gltf;
+  const tinygltf::Primitive& primitive;
+  const DracoPrimitive* draco;  // nullptr, or where some of the attributes are
+  const std::string& where;
+  std::size_t vertex_count;
+};
+
+/// An attribute's elements, one per vertex; a count of 0 where the primitive has none. Throws Error.
+Elements attribute_of(const VertexSource& source, const char* name, std::size_t least, std::size_t most);
+
+/// Fills the primitive's vertices; its indices must be there. Throws Error.
+void read_vertices(const VertexSource& source, Primitive& out);
+
+}  // namespace chandelier::baker
