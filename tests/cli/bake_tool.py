@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the tests of chandelier-bake share: the programs, scenes to bake, and a folder for each test."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BAKE = os.environ["CHANDELIER_BAKE"]
+INSPECT = os.environ["CHANDELIER_INSPECT"]
+DATA = pathlib.Path(os.environ.get("CHANDELIER_DATA_DIR", SOURCE.parent / "shared" / "data"))
+ROOM = SOURCE / "examples" / "cmake_project"
+
+
+class BakeTool(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.pack = self.folder / "out.chandelier"
+
+    def room(self, folder="room"):
+        """A copy of the example project's scene: glTF, rig, buffer and image. Returns glTF and rig."""
+        copy = self.folder / folder
+        shutil.copytree(ROOM, copy)
+        return copy / "room.gltf", copy / "lamps.gltf"
+
+    def example(self, name):
+        """A scene that a script of examples/ makes."""
+        path = self.folder / f"{name}.glb"
+        subprocess.run([sys.executable, SOURCE / "examples" / f"{name}.py", "-o", path], check=True, stdout=subprocess.DEVNULL)
+        return path
+
+    def data(self, path):
+        """A file of the test data; the test is skipped where it is absent."""
+        if not (DATA / path).exists():
+            self.skipTest(f"no {path} in the test data")
+        return DATA / path
+
+    def run_bake(self, *arguments, **options):
+        return subprocess.run([BAKE, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, **options)
+
+    def bake(self, *arguments, output=None):
+        """A bake that must work; returns the pack's bytes and the report."""
+        output = output or self.pack
+        report = self.folder / "report.json"
+        done = self.run_bake(*arguments, "-o", output, "--json", report, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return output.read_bytes(), json.loads(report.read_text())
+
+    def assert_opens(self, pack):
+        done = subprocess.run([INSPECT, pack, "--json"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def names(self, folder):
+        return sorted(path.name for path in folder.iterdir())
+
+
+def move_lights(rig, by=0.25):
+    """Moves every light of a .gltf, and nothing else."""
+    gltf = json.loads(rig.read_text())
+    for node in gltf["nodes"]:
+        node["translation"] = [x + by for x in node.get("translation", [0, 0, 0])]
+    rig.write_text(json.dumps(gltf))
+
+
+def main():
+    """As unittest.main(), but exits with 77, which CTest shows as skipped, where every test was skipped."""
+    program = unittest.main(module="__main__", exit=False)
+    result = program.result
+    if result.wasSuccessful() and result.testsRun and len(result.skipped) == result.testsRun:
+        sys.exit(77)
+    sys.exit(not result.wasSuccessful())

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Kills chandelier-bake at a hundred moments: the pack is the old one or the new one, and nothing piles up."""
+import random
+import shutil
+import signal
+import subprocess
+import time
+
+from bake_tool import BAKE, BakeTool, main, move_lights
+
+KILLS = 100
+
+
+class Kill(BakeTool):
+    def start(self):
+        return subprocess.Popen([BAKE, self.scene, self.rig, "-o", self.pack, "--cache", self.cache, "--quiet"],
+                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+
+    def test_old_or_new(self):
+        self.scene, self.rig = self.room()
+        self.cache = self.folder / "cache"
+        old, _ = self.bake(self.scene, self.rig)
+        move_lights(self.rig)
+        new, _ = self.bake(self.scene, self.rig, output=self.folder / "new.chandelier")
+        self.assertNotEqual(old, new)
+        began = time.monotonic()
+        self.assertEqual(self.start().wait(), 0)
+        duration = time.monotonic() - began
+
+        rng = random.Random(3)
+        killed = replaced = 0
+        for i in range(KILLS):
+            self.pack.write_bytes(old)
+            if i % 2:
+                shutil.rmtree(self.cache)  # so that entries are being written too
+            bake = self.start()
+            time.sleep(duration * rng.uniform(0, 1.1))
+            bake.send_signal(signal.SIGKILL)
+            _, said = bake.communicate()
+            killed += bake.returncode == -signal.SIGKILL
+            self.assertIn(bake.returncode, (0, -signal.SIGKILL), said)
+            now = self.pack.read_bytes()
+            self.assertTrue(now in (old, new), f"neither old nor new after kill {i}")
+            replaced += now == new
+        self.assertGreater(killed, KILLS // 4, "hardly any was killed: the delays are too long")
+        self.assert_opens(self.pack)
+
+        # The next bake sweeps up, and the cache that was written by the killed is as good as none.
+        done = self.run_bake(self.scene, self.rig, "-o", self.pack, "--cache", self.cache)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.pack.read_bytes(), new)
+        for folder in (self.folder, self.cache):
+            self.assertEqual([name for name in self.names(folder) if name.endswith(".tmp")], [])
+
+    def test_a_living_writer_keeps_its_file(self):
+        """The sweep takes what nobody holds, and leaves what somebody does."""
+        import fcntl
+        held, left = self.folder / ".chandelier-1-0.tmp", self.folder / ".chandelier-2-0.tmp"
+        other = self.folder / ".chandelier-notes.txt"
+        for path in (left, other):
+            path.write_text("x")
+        with open(held, "w", encoding="utf-8") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            self.bake(self.room()[0])
+            self.assertEqual((held.exists(), left.exists(), other.exists()), (True, False, True))
+
+
+if __name__ == "__main__":
+    main()
