@@ -103,16 +103,37 @@ std::string check_whole_number(const std::string& text) {
   return {};
 }
 
+std::string check_textures(const std::string& text) {
+  return text == "bc" || text == "raw" || text == "none" ? "" : "must be bc, raw or none (" + text + ")";
+}
+
+void add_image_options(CLI::App& app, ImageSettings& images) {
+  app.add_option_function<std::string>(
+         "--textures",
+         [&images](const std::string& text) {
+           images.textures = text == "bc" ? TextureMode::bc : text == "raw" ? TextureMode::raw : TextureMode::none;
+         },
+         "How images are stored: bc in blocks (BC1, BC3, BC5), raw in 4 bytes a texel, none not at all")
+      ->default_str("bc")
+      ->check(CLI::Validator(check_textures, ""));
+  app.add_option("--max-texture-size", images.max_size,
+                 "Halve images until neither side is longer than this, texels; 0 sets no limit")
+      ->capture_default_str()
+      ->check(CLI::Validator(check_whole_number<0, 16384>, ""));
+}
+
 /// What a build system wants of any tool.
 void add_build_options(CLI::App& app, Options& options) {
   app.option_defaults()->group("Build step");
   app.add_option("--cache", options.cache,
-                 "Folder that keeps what was baked, for bakes of the same files; made if need be");
-  app.add_option("--depfile", options.depfile, "Write which files were read, for Ninja and Make");
-  app.add_option("--json", options.json, "Write a report: times, counts and bytes of each pass, warnings; - is stdout");
+                 "Folder that keeps what was baked, for bakes of the same files; made if need be")
+      ->type_name("DIR");
+  app.add_option("--depfile", options.depfile, "Write which files were read, for Ninja and Make")->type_name("FILE");
+  app.add_option("--json", options.json, "Write a report: times, counts and bytes of each pass, warnings; - is stdout")
+      ->type_name("FILE");
   app.add_option("-j,--threads", options.threads, "Threads; 0: all cores. The pack is the same for any number")
       ->capture_default_str()
-      ->check(CLI::Range(0, 1024));
+      ->check(CLI::Validator(check_whole_number<0, 1024>, ""));
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "No progress and no summary; warnings and errors stay");
   app.add_flag("-v,--verbose", options.verbose, "A line for each pass")->excludes(quiet);
 }
@@ -165,6 +186,9 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
       ->capture_default_str()
       ->check(CLI::Validator(check_smooth_angle, ""));
   add_voxel_options(app, options.bake.voxels);
+  add_image_options(app, options.bake.images);
+  app.add_flag("--compress", options.compress,
+               "Make the pack small: sections are compressed where that saves, and decoded when it is opened");
   add_build_options(app, options);
   try {
     app.parse(argc, argv);
