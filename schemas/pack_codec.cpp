@@ -24,6 +24,10 @@ constexpr std::size_t sample_bytes = std::size_t{1} << 20;
 
 constexpr std::size_t word = 4;
 
+// zstd's frames without content start with this and a 32-bit size of what follows.
+constexpr std::uint32_t filler_magic = 0x184D2A50;
+constexpr std::size_t filler_head = 8;
+
 using Bytes = std::span<const std::byte>;
 
 template <typename T, std::size_t (*release)(T*)>
@@ -65,65 +69,73 @@ std::span<const std::uint32_t> words_of(Bytes bytes) {
 
 // ---- Encoding
 
-/// A section and one codec that it is tried with.
-struct Candidate {
+/// A section on its way to be stored.
+struct Coding {
   std::size_t section;  // of section_infos
-  Codec codec;
   Bytes records;
   std::size_t stride;
-  Layouts layouts;
-  std::vector<std::vector<std::byte>> frames;
+  Codec codec = Codec::zstd;
+  Layouts layouts = {};  // for Codec::columns
+  std::vector<std::vector<std::byte>> frames = {};
 };
 
-std::vector<Candidate> candidates_of(const View& view) {
-  std::vector<Candidate> all;
-  for (std::size_t i = 0; i < section_infos.size(); ++i) {
-    const Bytes records = section_bytes(view, i);
-    const std::size_t stride = section_infos[i].stride_bytes;
-    if (records.empty()) continue;
-    const auto add = [&](Codec codec) {
-      all.push_back({i, codec, records, stride, {}, {}});
-      all.back().frames.resize(chunk_count(records.size() / stride, stride));
-    };
-    const Section kind = section_infos[i].kind;
-    const bool corners = kind == Section::indices || kind == Section::voxel_indices;
-    if (corners && has_triangle_codec() && records.size() % (3 * word) == 0) add(Codec::triangles);
-    add(stride % word == 0 ? Codec::columns : Codec::zstd);
-  }
-  return all;
+bool holds_corners(const Coding& coding) {
+  const Section kind = section_infos[coding.section].kind;
+  return (kind == Section::indices || kind == Section::voxel_indices) && coding.records.size() % (3 * word) == 0;
 }
 
-void choose(Candidate& candidate) {
-  if (candidate.codec != Codec::columns) return;
-  const std::size_t count = candidate.records.size() / candidate.stride;
-  const std::size_t sampled = std::min(count, sample_bytes / candidate.stride + 1);
-  const Bytes sample = candidate.records.subspan((count - sampled) / 2 * candidate.stride, sampled * candidate.stride);
-  candidate.layouts =
-      choose_layouts(sample, candidate.stride, [](Bytes coded) { return compress(coded, trial_level).size(); });
+/// Finds what makes a sample from the middle smallest.
+void choose_codec(Coding& coding) {
+  if (coding.stride % word != 0) return;
+  const auto cost = [](Bytes coded) { return compress(coded, trial_level).size(); };
+  const std::size_t count = coding.records.size() / coding.stride;
+  const std::size_t sampled = std::min(count, sample_bytes / coding.stride / 3 * 3 + 3);
+  const std::size_t first = (count - sampled) / 2 / 3 * 3;
+  const Bytes sample = coding.records.subspan(first * coding.stride, sampled * coding.stride);
+  coding.codec = Codec::columns;
+  coding.layouts = choose_layouts(sample, coding.stride, cost);
+  if (!holds_corners(coding) || !has_triangle_codec()) return;
+  const auto corners = words_of(sample);
+  const std::size_t columns_cost = cost(to_columns(sample, coding.stride, coding.layouts));
+  const std::size_t triangles_cost = cost(to_triangle_code(corners, *std::ranges::min_element(corners)));
+  if (triangles_cost < columns_cost) coding.codec = Codec::triangles;
 }
 
 /// One above the largest corner before a chunk: the next vertex that its triangles use for the first time.
-std::uint32_t vertices_before(const Candidate& candidate, std::size_t chunk) {
-  const auto before = words_of(candidate.records.first(chunk * chunk_records(word) * word));
+std::uint32_t vertices_before(const Coding& coding, std::size_t chunk) {
+  const auto before = words_of(coding.records.first(chunk * chunk_records(word) * word));
   return before.empty() ? 0 : *std::ranges::max_element(before) + 1;
 }
 
-void encode_chunk(Candidate& candidate, std::size_t chunk) {
-  const Bytes records = chunk_of(candidate.records, candidate.stride, chunk);
-  std::vector<std::byte>& frame = candidate.frames[chunk];
-  if (candidate.codec == Codec::zstd) {
+void encode_chunk(Coding& coding, std::size_t chunk) {
+  const Bytes records = chunk_of(coding.records, coding.stride, chunk);
+  std::vector<std::byte>& frame = coding.frames[chunk];
+  if (coding.codec == Codec::zstd) {
     frame = compress(records, byte_level);
-  } else if (candidate.codec == Codec::columns) {
-    frame = compress(to_columns(records, candidate.stride, candidate.layouts), record_level);
+  } else if (coding.codec == Codec::columns) {
+    frame = compress(to_columns(records, coding.stride, coding.layouts), record_level);
   } else {
-    frame = compress(to_triangle_code(words_of(records), vertices_before(candidate, chunk)), record_level);
+    frame = compress(to_triangle_code(words_of(records), vertices_before(coding, chunk)), record_level);
   }
 }
 
-std::size_t size_of(const Candidate& candidate) {
-  std::size_t size = 0;
-  for (const std::vector<std::byte>& frame : candidate.frames) size += frame.size();
-  return size;
+/// Appends a zstd frame without content, of at least its head, so that all that is stored has `bytes` or more.
+void fill_up(std::vector<std::byte>& stored, std::size_t bytes) {
+  if (stored.size() >= bytes) return;
+  const std::size_t size = std::max(bytes - stored.size(), filler_head);
+  const std::uint32_t head[2] = {filler_magic, static_cast<std::uint32_t>(size - filler_head)};
+  const std::size_t at = stored.size();
+  stored.resize(at + size);
+  std::memcpy(&stored[at], head, filler_head);
+}
+
+/// Raw where the codec saves too little.
+Encoded encoded_of(const Coding& coding) {
+  Encoded encoded{coding.codec, {}};
+  for (const auto& frame : coding.frames) encoded.bytes.insert(encoded.bytes.end(), frame.begin(), frame.end());
+  fill_up(encoded.bytes, coding.records.size() / max_decode_ratio);
+  const std::size_t raw_size = coding.records.size();
+  return encoded.bytes.size() <= raw_size - raw_size / 20 ? encoded : Encoded{};
 }
 
 // ---- Decoding
@@ -170,29 +182,32 @@ std::string find_frames(const CodedSection& section, std::size_t number, std::ve
     tasks.push_back({number, chunk, rest.first(size)});
     rest = rest.subspan(size);
   }
-  return rest.empty() ? "" : "bytes after the last frame";
+  std::uint32_t head[2] = {};
+  if (rest.size() >= filler_head) std::memcpy(head, rest.data(), filler_head);
+  const bool filler = head[0] == filler_magic && head[1] == rest.size() - filler_head;
+  return rest.empty() || filler ? "" : "bytes after the last frame";
 }
 
 }  // namespace
 
 std::vector<Encoded> encode_sections(const View& view) {
-  std::vector<Candidate> candidates = candidates_of(view);
-  parallel_for(candidates.size(), [&](std::size_t i) { choose(candidates[i]); });
-  std::vector<std::pair<std::size_t, std::size_t>> chunks;  // of candidates and their frames
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    for (std::size_t j = 0; j < candidates[i].frames.size(); ++j) chunks.emplace_back(i, j);
+  std::vector<Coding> codings;
+  for (std::size_t i = 0; i < section_infos.size(); ++i) {
+    const Bytes records = section_bytes(view, i);
+    const std::size_t stride = section_infos[i].stride_bytes;
+    if (records.empty()) continue;
+    codings.push_back({i, records, stride});
+    codings.back().frames.resize(chunk_count(records.size() / stride, stride));
   }
-  parallel_for(chunks.size(), [&](std::size_t i) { encode_chunk(candidates[chunks[i].first], chunks[i].second); });
-  std::vector<Encoded> best(section_infos.size());
-  for (const Candidate& candidate : candidates) {
-    Encoded& encoded = best[candidate.section];
-    const std::size_t size = size_of(candidate), raw_size = candidate.records.size();
-    const bool pays = size <= raw_size - raw_size / 20 && size >= raw_size / max_decode_ratio;
-    if (!pays || (!encoded.bytes.empty() && size >= encoded.bytes.size())) continue;
-    encoded = {candidate.codec, {}};
-    for (const auto& frame : candidate.frames) encoded.bytes.insert(encoded.bytes.end(), frame.begin(), frame.end());
+  parallel_for(codings.size(), [&](std::size_t i) { choose_codec(codings[i]); });
+  std::vector<std::pair<std::size_t, std::size_t>> chunks;  // of codings and their frames
+  for (std::size_t i = 0; i < codings.size(); ++i) {
+    for (std::size_t j = 0; j < codings[i].frames.size(); ++j) chunks.emplace_back(i, j);
   }
-  return best;
+  parallel_for(chunks.size(), [&](std::size_t i) { encode_chunk(codings[chunks[i].first], chunks[i].second); });
+  std::vector<Encoded> encoded(section_infos.size());
+  for (const Coding& coding : codings) encoded[coding.section] = encoded_of(coding);
+  return encoded;
 }
 
 std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count) {

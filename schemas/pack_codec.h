@@ -16,8 +16,8 @@ struct Encoded {
   std::vector<std::byte> bytes;  ///< Empty for Codec::raw: what is stored are the section's own bytes.
 };
 
-/// For each section of section_infos the smallest that any codec makes of it; raw where no codec saves a twentieth.
-/// Same view, same bytes, whatever the number of threads.
+/// For each section of section_infos what the codec makes of it that is best for a sample; raw where that saves less
+/// than a twentieth. Same view, same bytes, whatever the number of threads.
 std::vector<Encoded> encode_sections(const View& view);
 
 /// One section that is stored with a codec, and where its records go.

@@ -23,7 +23,7 @@ std::string name(const pack::File& file, const pack::StringRef& ref) {
   return std::string(file.text(ref));
 }
 
-Json sections(const pack::View& view) {
+Json sections(const pack::View& view, const Summary& summary) {
   Json list = Json::array();
   for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
     const pack::SectionInfo& info = pack::section_infos[i];
@@ -32,7 +32,33 @@ Json sections(const pack::View& view) {
                     {"name", info.name},
                     {"count", bytes / info.stride_bytes},
                     {"stride_bytes", info.stride_bytes},
-                    {"size_bytes", bytes}});
+                    {"size_bytes", bytes},
+                    {"stored_bytes", summary.stored[i].bytes},
+                    {"codec", name_of(summary.stored[i].codec)}});
+  }
+  return list;
+}
+
+Json to_json(const Hierarchy& bvh) {
+  return {{"nodes", bvh.nodes}, {"depth", bvh.depth}};
+}
+
+Json voxels(const pack::View& view, const Summary& summary) {
+  if (view.voxel_grid.empty()) return nullptr;
+  const pack::VoxelGrid& grid = view.voxel_grid[0];
+  return {{"resolution", grid.resolution},
+          {"mode", name_of(grid.mode)},
+          {"occupied", summary.voxels.occupied},
+          {"triangles", summary.voxels.triangles},
+          {"no_cull_triangles", summary.voxels.no_cull_triangles}};
+}
+
+Json animations(const pack::File& file) {
+  Json list = Json::array();
+  for (const pack::Animation& animation : file.view().animations) {
+    list.push_back({{"name", name(file, animation.name)},
+                    {"duration_s", animation.duration_s},
+                    {"channels", animation.channel_count}});
   }
   return list;
 }
@@ -72,7 +98,12 @@ Json lights(const pack::File& file) {
                     {"range_m", light.range_m},
                     {"range_source", name_of(light.range_source)},
                     {"inner_cone_cos", light.inner_cone_cos},
-                    {"outer_cone_cos", light.outer_cone_cos}});
+                    {"outer_cone_cos", light.outer_cone_cos},
+                    {"bounds_center_ws", to_json(light.bounds_center_ws)},
+                    {"bounds_radius_m", light.bounds_radius_m},
+                    {"priority", light.priority},
+                    {"dynamic", light.dynamic == 1},
+                    {"unclustered", light.unclustered == 1}});
   }
   return list;
 }
@@ -104,13 +135,27 @@ std::string json_report(const std::string& path, const pack::File& file) {
                        {"bounds_min_ws", to_json(view.bake_info->bounds_min_ws)},
                        {"bounds_max_ws", to_json(view.bake_info->bounds_max_ws)},
                        {"range_threshold_lx", view.bake_info->range_threshold_lx},
-                       {"sections", sections(view)},
+                       {"position_error_m", view.bake_info->position_error_m},
+                       {"normal_error_rad", view.bake_info->normal_error_rad},
+                       {"uv_error", view.bake_info->uv_error},
+                       {"sections", sections(view, summary)},
                        {"triangles", {{"stored", summary.stored_triangles}, {"drawn", summary.drawn_triangles}}},
                        {"batches",
                         {{"count", view.batches.size()},
                          {"drawn", view.batch_instances.size()},
+                         {"closed", summary.closed_batches},
                          {"triangles", to_json(summary.batch_triangles)}}},
                        {"instances", view.instances.size()},
+                       {"dynamic_instances", summary.dynamic_instances},
+                       {"skinned_instances", summary.skinned_instances},
+                       {"batch_bvh", to_json(summary.batch_bvh)},
+                       {"instance_bvh", to_json(summary.instance_bvh)},
+                       {"triangle_bvh", to_json(summary.triangle_bvh)},
+                       {"light_bvh", to_json(summary.light_bvh)},
+                       {"voxels", voxels(view, summary)},
+                       {"nodes", view.nodes.size()},
+                       {"animations", animations(file)},
+                       {"skins", view.skins.size()},
                        {"materials", materials(file)},
                        {"images", images(file)},
                        {"lights", lights(file)},

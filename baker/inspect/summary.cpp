@@ -29,11 +29,56 @@ void add_lights(const pack::View& view, Summary& summary) {
   for (const pack::Light& light : view.lights) {
     ++summary.lights_of_type[static_cast<std::size_t>(light.type)];
     ++summary.lights_of_source[static_cast<std::size_t>(light.range_source)];
+    summary.dynamic_lights += light.dynamic;
+    summary.unclustered_lights += light.unclustered;
     if (light.range_source != pack::RangeSource::unbounded) ranges.add(light.range_m);
     if (light.type != pack::LightType::directional) intensities.add(light.intensity);
   }
   summary.range_m = ranges.spread();
   summary.intensity_cd = intensities.spread();
+}
+
+/// Of nodes in depth-first order; `end_of` gives the number of the node after a node's subtree.
+template <typename Node, typename End>
+Hierarchy hierarchy(std::span<const Node> nodes, End end_of) {
+  Hierarchy result{nodes.size(), 0};
+  std::vector<std::uint64_t> ends;  // of the subtrees around the node, outermost first
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    while (!ends.empty() && ends.back() <= i) ends.pop_back();
+    ends.push_back(end_of(nodes[i]));
+    result.depth = std::max<std::uint64_t>(result.depth, ends.size());
+  }
+  return result;
+}
+
+void add_hierarchies(const pack::View& view, Summary& summary) {
+  const auto skip = [](const pack::BvhNode& node) { return node.skip; };
+  summary.batch_bvh = hierarchy(view.batch_bvh, skip);
+  summary.instance_bvh = hierarchy(view.instance_bvh, skip);
+  summary.light_bvh = hierarchy(view.light_bvh, [](const pack::LightBvhNode& node) { return node.miss; });
+  summary.triangle_bvh = hierarchy(view.triangle_bvh, skip);
+}
+
+void add_voxels(const pack::View& view, Summary& summary) {
+  for (const pack::VoxelCell& cell : view.voxel_cells) summary.voxels.occupied += cell.run_count > 0;
+  summary.voxels.triangles = view.voxel_indices.size() / 3;
+  for (const pack::VoxelGrid& grid : view.voxel_grid) {
+    for (const pack::VoxelRun& run : view.voxel_runs.subspan(grid.no_cull_first_run, grid.no_cull_run_count)) {
+      summary.voxels.no_cull_triangles += run.index_count / 3;
+    }
+  }
+}
+
+std::vector<Stored> stored_sections(const pack::File& file) {
+  std::vector<Stored> stored(pack::section_infos.size());
+  for (const pack::SectionEntry& entry : file.table()) {
+    for (std::size_t i = 0; i < stored.size(); ++i) {
+      if (static_cast<std::uint32_t>(pack::section_infos[i].kind) == entry.kind) {
+        stored[i] = {entry.codec, entry.size_bytes};
+      }
+    }
+  }
+  return stored;
 }
 
 std::vector<std::string> split_lines(std::string_view text) {
@@ -53,7 +98,10 @@ Summary summarize(const pack::File& file) {
   Summary summary;
   summary.stored_triangles = view.indices.size() / 3;
   Gather triangles;
-  for (const pack::Batch& batch : view.batches) triangles.add(batch.index_count / 3);
+  for (const pack::Batch& batch : view.batches) {
+    triangles.add(batch.index_count / 3);
+    summary.closed_batches += batch.closed;
+  }
   summary.batch_triangles = triangles.spread();
   for (const pack::BatchInstance& draw : view.batch_instances) {
     summary.drawn_triangles += view.batches[draw.batch].index_count / 3;
@@ -62,7 +110,14 @@ Summary summarize(const pack::File& file) {
     summary.masked_materials += material.alpha_mode == pack::AlphaMode::mask;
     summary.double_sided_materials += material.double_sided;
   }
+  for (const pack::Instance& instance : view.instances) {
+    summary.dynamic_instances += instance.dynamic;
+    summary.skinned_instances += instance.skin != pack::none;
+  }
   add_lights(view, summary);
+  add_hierarchies(view, summary);
+  add_voxels(view, summary);
+  summary.stored = stored_sections(file);
   summary.sources = split_lines(file.text(view.bake_info->source));
   return summary;
 }

@@ -16,7 +16,25 @@ struct Spread {
   double min = 0, mean = 0, max = 0;
 };
 
+/// How one section is stored.
+struct Stored {
+  pack::Codec codec = pack::Codec::raw;
+  std::uint64_t bytes = 0;  ///< In the file.
+};
+
+/// A BVH's nodes, and how many of them lie between a root and its farthest leaf, both counted.
+struct Hierarchy {
+  std::uint64_t nodes = 0, depth = 0;
+};
+
+struct Voxels {
+  std::uint64_t occupied = 0;           ///< Cells that hold a triangle.
+  std::uint64_t triangles = 0;          ///< In cells and in no-cull runs; clipped parts counted each.
+  std::uint64_t no_cull_triangles = 0;  ///< Of those, the ones that no cell holds.
+};
+
 struct Summary {
+  std::vector<Stored> stored;  ///< By section_infos.
   std::uint64_t stored_triangles = 0;
   std::uint64_t drawn_triangles = 0;
   Spread batch_triangles;
@@ -24,9 +42,14 @@ struct Summary {
   std::uint64_t double_sided_materials = 0;
   std::array<std::uint64_t, 3> lights_of_type = {};    ///< By LightType.
   std::array<std::uint64_t, 3> lights_of_source = {};  ///< By RangeSource.
-  Spread range_m;                                      ///< Of lights with an end.
-  Spread intensity_cd;                                 ///< Of point and spot lights.
-  std::vector<std::string> sources;                    ///< The input files' names.
+  std::uint64_t dynamic_lights = 0, unclustered_lights = 0;
+  std::uint64_t closed_batches = 0;
+  std::uint64_t dynamic_instances = 0, skinned_instances = 0;
+  Hierarchy batch_bvh, instance_bvh, triangle_bvh, light_bvh;
+  Voxels voxels;
+  Spread range_m;                    ///< Of lights with an end.
+  Spread intensity_cd;               ///< Of point and spot lights.
+  std::vector<std::string> sources;  ///< The input files' names.
 };
 
 Summary summarize(const pack::File& file);

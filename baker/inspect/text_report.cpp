@@ -39,23 +39,62 @@ std::string vector_text(const glm::vec3& v) {
   return fmt::format("{:.3g}, {:.3g}, {:.3g}", v.x, v.y, v.z);
 }
 
-void put_sections(Out out, const pack::View& view) {
-  fmt::format_to(out, "\n{:<18}{:>12}{:>8}{:>16}\n", "section", "count", "stride", "bytes");
+void put_sections(Out out, const pack::View& view, const Summary& summary) {
+  fmt::format_to(out, "\n{:<20}{:>12}{:>8}{:>16}{:>16}  {}\n", "section", "count", "stride", "bytes", "stored",
+                 "codec");
   for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
     const pack::SectionInfo& info = pack::section_infos[i];
     const std::size_t bytes = pack::section_bytes(view, i).size();
-    fmt::format_to(out, "{:<18}{:>12}{:>8}{:>16}\n", info.name, bytes / info.stride_bytes, info.stride_bytes, bytes);
+    if (bytes == 0) continue;
+    fmt::format_to(out, "{:<20}{:>12}{:>8}{:>16}{:>16}  {}\n", info.name, bytes / info.stride_bytes, info.stride_bytes,
+                   bytes, summary.stored[i].bytes, name_of(summary.stored[i].codec));
   }
+}
+
+/// "37.5 %" of what there is.
+std::string share(std::uint64_t part, std::uint64_t whole) {
+  return fmt::format("{:.1f} %", whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole));
 }
 
 void put_geometry(Out out, const pack::View& view, const Summary& summary) {
   const Spread& size = summary.batch_triangles;
   fmt::format_to(out, "\ntriangles  {} stored, {} drawn by {} instances\n", summary.stored_triangles,
                  summary.drawn_triangles, view.instances.size());
-  fmt::format_to(out, "batches    {} of {:.0f} to {:.0f} triangles, {:.1f} in the mean; {} drawn\n",
-                 view.batches.size(), size.min, size.max, size.mean, view.batch_instances.size());
+  fmt::format_to(out, "batches    {} of {:.0f} to {:.0f} triangles, {:.1f} in the mean; {} drawn; {} ({}) closed\n",
+                 view.batches.size(), size.min, size.max, size.mean, view.batch_instances.size(),
+                 summary.closed_batches, share(summary.closed_batches, view.batches.size()));
   fmt::format_to(out, "materials  {}, {} with an alpha mask, {} double-sided\n", view.materials.size(),
                  summary.masked_materials, summary.double_sided_materials);
+}
+
+void put_structures(Out out, const pack::View& view, const Summary& summary) {
+  const auto put_bvh = [&](const char* name, const Hierarchy& bvh, const char* more) {
+    if (bvh.nodes > 0) fmt::format_to(out, "{:<11}{} nodes, {} deep{}\n", name, bvh.nodes, bvh.depth, more);
+  };
+  put_bvh("batch BVH", summary.batch_bvh, "");
+  put_bvh("inst. BVH", summary.instance_bvh, "");
+  put_bvh("tri. BVH", summary.triangle_bvh, " at most, one for each mesh");
+  put_bvh("light BVH", summary.light_bvh, "");
+  for (const pack::VoxelGrid& grid : view.voxel_grid) {
+    fmt::format_to(out, "voxels     {} x {} x {}, {}; {} ({}) occupied; {} of {} triangles ({}) not culled\n",
+                   grid.resolution[0], grid.resolution[1], grid.resolution[2], name_of(grid.mode),
+                   summary.voxels.occupied, share(summary.voxels.occupied, view.voxel_cells.size()),
+                   summary.voxels.no_cull_triangles, summary.voxels.triangles,
+                   share(summary.voxels.no_cull_triangles, summary.voxels.triangles));
+  }
+  if (!view.nodes.empty()) {
+    fmt::format_to(out, "motion     {} nodes, {} animations, {} skins; {} of {} instances move, {} by a skin\n",
+                   view.nodes.size(), view.animations.size(), view.skins.size(), summary.dynamic_instances,
+                   view.instances.size(), summary.skinned_instances);
+  }
+}
+
+/// Each animation with its length.
+void put_animations(Out out, const pack::File& file) {
+  for (const pack::Animation& animation : file.view().animations) {
+    fmt::format_to(out, "  {:>8.3g} s, {} channels  {}\n", animation.duration_s, animation.channel_count,
+                   printable(file.text(animation.name)));
+  }
 }
 
 void put_images(Out out, const pack::File& file) {
@@ -82,8 +121,9 @@ void put_light_table(Out out, const pack::File& file) {
 }
 
 void put_lights(Out out, const pack::File& file, const Summary& summary, bool all_lights) {
-  fmt::format_to(out, "lights     {}: {} point, {} spot, {} directional\n", file.view().lights.size(),
-                 summary.lights_of_type[0], summary.lights_of_type[1], summary.lights_of_type[2]);
+  fmt::format_to(out, "lights     {}: {} point, {} spot, {} directional; {} dynamic, {} unclustered\n",
+                 file.view().lights.size(), summary.lights_of_type[0], summary.lights_of_type[1],
+                 summary.lights_of_type[2], summary.dynamic_lights, summary.unclustered_lights);
   if (summary.lights_of_type[0] + summary.lights_of_type[1] > 0) {
     fmt::format_to(out, "  range      {:.4g} to {:.4g} m; {} authored, {} derived at {:.3g} lx\n", summary.range_m.min,
                    summary.range_m.max, summary.lights_of_source[0], summary.lights_of_source[1],
@@ -112,8 +152,10 @@ std::string text_report(const std::string& path, const pack::File& file, bool al
   fmt::format_to(out, "{}: {}, version {}\n", printable(path), size_text(file.size_bytes()), pack::schema_version);
   for (const std::string& source : summary.sources) fmt::format_to(out, "  from {}\n", printable(source));
   fmt::format_to(out, "  bounds ({}) to ({}) m\n", vector_text(info.bounds_min_ws), vector_text(info.bounds_max_ws));
-  put_sections(out, file.view());
+  put_sections(out, file.view(), summary);
   put_geometry(out, file.view(), summary);
+  put_structures(out, file.view(), summary);
+  put_animations(out, file);
   put_images(out, file);
   put_lights(out, file, summary, all_lights);
   put_cameras(out, file);

@@ -23,8 +23,8 @@ struct Target {
   std::vector<char> bytes;
   int descriptor = -1;
 
-  Target() {
-    write(path, sample());
+  explicit Target(Compression compression = Compression::off) {
+    write(path, sample(), compression);
     bytes = read_file(path);
     descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   }
@@ -32,12 +32,30 @@ struct Target {
   void put(std::size_t at, char value) const { ASSERT_EQ(pwrite(descriptor, &value, 1, static_cast<off_t>(at)), 1); }
 };
 
-TEST(PackDamage, EveryTruncationIsRefused) {
-  const Target target;
+/// Both ways to store a pack.
+class StoredPack : public testing::TestWithParam<Compression> {};
+INSTANTIATE_TEST_SUITE_P(Each, StoredPack, testing::Values(Compression::off, Compression::smallest),
+                         [](const auto& each) { return each.param == Compression::off ? "Raw" : "Compressed"; });
+
+TEST_P(StoredPack, EveryTruncationIsRefused) {
+  const Target target(GetParam());
   for (std::size_t size = target.bytes.size(); size-- > 0;) {
     ASSERT_EQ(ftruncate(target.descriptor, static_cast<off_t>(size)), 0);
     ASSERT_NE(open_error(target.path), "") << size << " bytes";
   }
+}
+
+TEST_P(StoredPack, TenThousandChangedBytesAreRefused) {
+  const Target target(GetParam());
+  std::mt19937 random(2);
+  for (int round = 0; round < 10000; ++round) {
+    const std::size_t at = random() % target.bytes.size();
+    const int change = 1 + static_cast<int>(random() % 255);
+    target.put(at, static_cast<char>(target.bytes[at] + change));
+    ASSERT_NE(open_error(target.path), "") << "byte " << at << " plus " << change;
+    target.put(at, target.bytes[at]);
+  }
+  EXPECT_EQ(open_error(target.path), "");
 }
 
 TEST(PackDamage, BytesAtTheEndAreRefused) {
@@ -88,8 +106,7 @@ void reseal(std::vector<char>& bytes) {
   std::memcpy(bytes.data(), &header, sizeof(header));
 }
 
-/// Follows every reference of an opened pack, as a renderer would. A sanitizer sees it if one leads astray.
-double follow(const File& file) {
+double follow_draws(const File& file) {
   const View& view = file.view();
   double sum = 0;
   for (const BatchInstance& draw : view.batch_instances) {
@@ -107,13 +124,85 @@ double follow(const File& file) {
     }
     for (const char c : file.text(material.name)) sum += c;
   }
-  for (const Light& light : view.lights) sum += light.intensity + static_cast<double>(file.text(light.name).size());
+  for (const Light& light : view.lights) {
+    sum += light.intensity + static_cast<double>(file.text(light.name).size());
+    if (light.voxel != none) sum += view.voxel_cells[light.voxel].run_count;
+  }
   return sum;
 }
 
+/// Goes down each hierarchy as a shader would: one that is missed, one that is hit. Ends only if every skip leads on.
+double follow_hierarchies(const View& view) {
+  double sum = 0;
+  const auto walk = [&](std::span<const BvhNode> nodes, bool hit, auto item) {
+    for (std::uint32_t at = 0; at < nodes.size();) {
+      const BvhNode& node = nodes[at];
+      for (std::uint32_t i = 0; node.leaf != none && i < node.leaf % 16; ++i) sum += item(node.leaf / 16 + i);
+      at = hit ? at + 1 : node.skip;
+    }
+  };
+  for (const bool hit : {false, true}) {
+    walk(view.batch_bvh, hit,
+         [&](auto i) { return view.batch_instances[view.batch_bvh_items[i].batch_instance].batch; });
+    walk(view.instance_bvh, hit, [&](auto i) { return view.instances[view.instance_bvh_items[i].instance].mesh; });
+    walk(view.triangle_bvh, hit,
+         [&](auto i) { return view.indices[3 * view.triangle_bvh_items[i].triangle + 2].vertex; });
+    for (std::uint32_t at = 0; at < view.light_bvh.size();) {
+      const LightBvhNode& node = view.light_bvh[at];
+      if (node.light != none) sum += view.lights[node.light].intensity;
+      at = hit ? at + 1 : node.miss;
+    }
+  }
+  return sum;
+}
+
+double follow_voxels(const View& view) {
+  double sum = 0;
+  for (const VoxelRun& run : view.voxel_runs) {
+    for (std::uint32_t i = 0; i < run.index_count; ++i) {
+      const std::uint32_t vertex = view.voxel_indices[run.first_index + i].vertex;
+      sum += run.instance == none ? view.voxel_vertices[vertex].position_ws.x : view.positions[vertex].position_ls.x;
+    }
+  }
+  for (std::size_t i = 0; i < view.voxel_cells.size(); ++i) sum += view.voxel_occupancy[i / 32].bits >> i % 32 & 1;
+  return sum;
+}
+
+double follow_motion(const View& view) {
+  double sum = 0;
+  for (const Animation& animation : view.animations) {
+    for (const AnimationChannel& channel :
+         view.animation_channels.subspan(animation.first_channel, animation.channel_count)) {
+      const std::uint32_t width = channel.path == AnimationPath::rotation ? 4 : 3;
+      const std::uint32_t each = channel.interpolation == Interpolation::cubic_spline ? 3 * width : width;
+      for (std::uint32_t key = 0; key < channel.key_count; ++key) {
+        sum += view.animation_times[channel.first_key + key].time_s + view.nodes[channel.node].scale.x;
+        for (std::uint32_t i = 0; i < each; ++i)
+          sum += view.animation_values[channel.first_value + key * each + i].value;
+      }
+    }
+  }
+  for (const Instance& instance : view.instances) {
+    for (std::uint32_t node = instance.node; node != none; node = view.nodes[node].parent) sum += 1;
+    if (instance.skin == none) continue;
+    const Skin& skin = view.skins[instance.skin];
+    const Mesh& mesh = view.meshes[instance.mesh];
+    for (const SkinVertex& vertex : view.skin_vertices.subspan(mesh.first_skin_vertex, mesh.skin_vertex_count)) {
+      const std::uint32_t joint = vertex.joints[0] & 0xffff;
+      sum += view.nodes[view.joints[skin.first_joint + joint].node].rotation.w;
+    }
+  }
+  return sum;
+}
+
+/// Follows every reference of an opened pack, as a renderer would. A sanitizer sees it if one leads astray.
+double follow(const File& file) {
+  return follow_draws(file) + follow_hierarchies(file.view()) + follow_voxels(file.view()) + follow_motion(file.view());
+}
+
 // With right checksums a change may leave a valid pack. It must then be one that can be used; else it must be refused.
-TEST(PackDamage, ChangesWithRightChecksumsAreRefusedOrHarmless) {
-  const Target target;
+TEST_P(StoredPack, ChangesWithRightChecksumsAreRefusedOrHarmless) {
+  const Target target(GetParam());
   std::mt19937 random(1);
   int refused = 0, harmless = 0;
   for (int round = 0; round < 20000; ++round) {
@@ -131,7 +220,7 @@ TEST(PackDamage, ChangesWithRightChecksumsAreRefusedOrHarmless) {
     }
   }
   EXPECT_GT(refused, 1000);
-  EXPECT_GT(harmless, 1000);
+  EXPECT_GT(harmless, 100);
 }
 
 TEST(PackDamage, WhatIsNoPack) {

@@ -29,9 +29,9 @@ class PackInspect(unittest.TestCase):
         self.assertEqual(report["sources"], ["hall.glb", "lamps.gltf"])
         self.assertEqual(report["bounds_min_ws"], [-2, 0, -0.5])
         self.assertEqual(report["sections"][2], {"kind": 3, "name": "positions", "count": 7, "stride_bytes": 12,
-                                                 "size_bytes": 84})
+                                                 "size_bytes": 84, "stored_bytes": 84, "codec": "raw"})
         self.assertEqual(report["triangles"], {"stored": 3, "drawn": 5})
-        self.assertEqual(report["batches"], {"count": 3, "drawn": 5, "triangles": {"min": 1, "mean": 1, "max": 1}})
+        self.assertEqual(report["batches"], {"count": 3, "drawn": 5, "closed": 0, "triangles": {"min": 1, "mean": 1, "max": 1}})
         self.assertEqual([m["name"] for m in report["materials"]], ["stone", "Blätter"])
         self.assertEqual(report["images"][0], {"name": "bricks.png", "width": 4, "height": 2, "level_count": 3,
                                                "format": "rgba8_srgb", "size_bytes": 44})
@@ -40,12 +40,23 @@ class PackInspect(unittest.TestCase):
                           ("sun", "directional", "unbounded")])
         self.assertEqual(report["lights"][0]["position_ws"], [1, 2, 3])
         self.assertEqual(report["cameras"][0]["name"], "eye")
+        self.assertEqual([light["dynamic"] for light in report["lights"]], [False, False, True])
+        self.assertEqual((report["dynamic_instances"], report["skinned_instances"]), (1, 1))
+        self.assertEqual(report["batch_bvh"], {"nodes": 3, "depth": 2})
+        self.assertEqual(report["triangle_bvh"], {"nodes": 4, "depth": 2})
+        self.assertEqual(report["light_bvh"], {"nodes": 3, "depth": 2})
+        self.assertEqual(report["voxels"], {"resolution": [1, 1, 2], "mode": "clip", "occupied": 2, "triangles": 8,
+                                            "no_cull_triangles": 0})
+        self.assertEqual(report["animations"], [{"name": "wave", "duration_s": 1.5, "channels": 3}])
 
     def test_text(self):
         run = inspect(self.path)
         self.assertEqual((run.returncode, run.stderr), (0, ""))
-        for part in ("positions                    7      12              84", "3 stored, 5 drawn by 3 instances",
-                     "3: 1 point, 1 spot, 1 directional", "1 authored, 1 derived at 0.05 lx", "bricks.png", "eye"):
+        for part in ("positions                      7      12              84              84  raw", "3 stored, 5 drawn by 3 instances",
+                     "3: 1 point, 1 spot, 1 directional; 1 dynamic, 1 unclustered",
+                     "3 nodes, 2 deep", "1 x 1 x 2, clip; 2 (100.0 %) occupied; 0 of 8 triangles (0.0 %) not culled",
+                     "0 (0.0 %) closed", "2 nodes, 1 animations, 1 skins; 1 of 3 instances move, 1 by a skin",
+                     "3 channels  wave", "1 authored, 1 derived at 0.05 lx", "bricks.png", "eye"):
             self.assertIn(part, run.stdout)
         self.assertNotIn("torch", run.stdout)
 

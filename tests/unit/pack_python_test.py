@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # Python's generated module reads what C++ wrote: the values of pack_sample.cpp.
+import math
 import os
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
+import numpy as np
 import pack_schema
+import xxhash
 
 
 class PackPython(unittest.TestCase):
@@ -58,6 +61,47 @@ class PackPython(unittest.TestCase):
         self.assertEqual(pack.lights["intensity"].tolist(), [12.5, 12.5, 1000])
         self.assertEqual(pack.textures["wrap_v"].tolist(), [pack_schema.WRAP_MIRRORED_REPEAT, pack_schema.WRAP_REPEAT])
         self.assertEqual(pack.text(pack.cameras[0]["name"]), "eye")
+
+    def write_compressed(self, name):
+        subprocess.run([os.environ["CHANDELIER_WRITE_SAMPLE"], self.path, name], check=True)
+
+    @unittest.skipUnless(pack_schema.zstandard, "Python's zstandard module is absent")
+    def test_columns_are_decoded(self):
+        self.write_compressed("points")
+        pack = pack_schema.read_pack(self.path)
+        self.assertEqual(len(pack.positions), 100 * 100)
+        self.assertEqual(pack.positions["position_ls"][2 * 100 + 3].tolist()[:2], [3 / 64, 2 / 128])
+        heights = pack.positions["position_ls"][:, 2] * 1024
+        y, x = np.divmod(np.arange(100 * 100), 100)
+        self.assertTrue((heights == np.round(heights)).all())
+        self.assertLess(np.abs(heights - 300 * np.sin(x / 9) * np.cos(y / 7)).max(), 0.6)
+        self.assertEqual(pack.vertex_attributes["normal_ls"].tolist(), [x * 7919 for y in range(100) for x in range(100)])
+        self.assertEqual(pack.vertex_attributes["uv0"][:, 1].tolist(), [y / 16384 for y in range(100) for x in range(100)])
+
+    def test_the_code_of_triangles_is_refused_by_name(self):
+        self.write_compressed("sheet")
+        with self.assertRaisesRegex(pack_schema.PackError, "triangles|zstandard"):
+            pack_schema.read_pack(self.path)
+
+    @unittest.skipUnless(pack_schema.zstandard, "Python's zstandard module is absent")
+    def test_damaged_frames_are_refused(self):
+        self.write_compressed("points")
+        data = bytearray(self.path.read_bytes())
+        header = pack_schema.FileHeader.itemsize
+        for at in range(0, 200):  # in the frame of the positions, with right checksums
+            bad = np.frombuffer(bytes(data), np.uint8).copy()
+            head = bad[:header].view(pack_schema.FileHeader)
+            table = bad[header:header + int(head["section_count"][0]) * pack_schema.SectionEntry.itemsize]
+            entry = table.view(pack_schema.SectionEntry)[1]
+            first, size = int(entry["offset_bytes"]), int(entry["size_bytes"])
+            bad[first + at] ^= 0x41
+            entry["checksum"] = xxhash.xxh3_64_intdigest(bad[first:first + size])
+            head["table_checksum"] = xxhash.xxh3_64_intdigest(table)
+            bad.tofile(self.path)
+            try:
+                self.assertEqual(len(pack_schema.read_pack(self.path).positions), 100 * 100)
+            except pack_schema.PackError:
+                pass
 
     def test_damage_is_refused(self):
         good = self.path.read_bytes()

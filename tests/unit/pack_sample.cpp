@@ -197,6 +197,28 @@ Contents sample() {
   return contents;
 }
 
+Contents sheet(std::uint32_t side) {
+  Contents c;
+  for (std::uint32_t y = 0; y < side; ++y) {
+    for (std::uint32_t x = 0; x < side; ++x) {
+      const auto u = static_cast<float>(x), v = static_cast<float>(y);
+      c.positions.push_back({{u / 64, v / 128, std::round(300 * std::sin(u / 9) * std::cos(v / 7)) / 1024}});
+      c.vertex_attributes.push_back({x * 7919u, y * 104729u, {u / 16384, v / 16384}, {}, 0xffffffffu});
+    }
+  }
+  for (std::uint32_t y = 0; y + 1 < side; ++y) {
+    for (std::uint32_t x = 0; x + 1 < side; ++x) {
+      const std::uint32_t i = y * side + x;
+      const std::uint32_t turned = ((x * 2654435761u ^ y * 40503u) * 2246822519u) >> 31;  // which diagonal: without a pattern
+      const std::uint32_t a = turned ? i + side : i, b = turned ? i : i + 1;
+      const std::uint32_t across = turned ? i + side + 1 : i + side, d = turned ? i + 1 : i + side + 1;
+      for (const std::uint32_t corner : {a, b, across, across, b, d}) c.indices.push_back({corner});
+    }
+  }
+  c.bake_info.batch_triangles = 1;
+  return c;
+}
+
 StringRef add_string(Contents& contents, std::string_view text) {
   const StringRef ref{static_cast<std::uint32_t>(contents.strings.size()), static_cast<std::uint32_t>(text.size())};
   for (const char c : text) contents.strings.push_back(static_cast<std::byte>(c));

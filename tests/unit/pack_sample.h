@@ -13,6 +13,10 @@ namespace chandelier::pack::test {
 /// Valid. pack_python_test.py knows its values.
 Contents sample();
 
+/// A wavy sheet of `side` times `side` vertices whose positions are multiples of 2^-10: long sections, and nothing
+/// drawn. Valid. pack_python_test.py knows its values.
+Contents sheet(std::uint32_t side);
+
 /// Appends to the strings section.
 StringRef add_string(Contents& contents, std::string_view text);
 

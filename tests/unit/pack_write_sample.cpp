@@ -1,13 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the sample pack to the path it is given, for tests in other languages.
+// Writes the sample pack to the path it is given, for tests in other languages; with `sheet` or `points` as a second
+// argument the compressed sheet, with its triangles or without.
 #include <cstdio>
+#include <string>
 
 #include "pack_sample.h"
 
+namespace {
+
+void write_named(const char* path, const std::string& name) {
+  using namespace chandelier::pack;
+  if (name == "sample") return write(path, test::sample());
+  Contents sheet = test::sheet(name == "points" ? 100 : 300);
+  if (name == "points") sheet.indices.clear();
+  write(path, sheet, Compression::smallest);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
+  if (argc != 2 && argc != 3) return 2;
   try {
-    chandelier::pack::write(argv[1], chandelier::pack::test::sample());
+    write_named(argv[1], argc == 3 ? argv[2] : "sample");
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "pack_write_sample: error: %s\n", error.what());
