@@ -136,19 +136,22 @@ uint32_t Scene::add_material(const pack::Material& material) {
   return static_cast<uint32_t>(contents_.materials.size() - 1);
 }
 
-uint32_t Scene::add_texture(uint32_t width, uint32_t height, const std::vector<uint32_t>& texels) {
+uint32_t Scene::add_texture(pack::Image image, std::span<const std::byte> bytes, const UvTransform& uv_transform) {
   contents_.image_data.resize((contents_.image_data.size() + 15) / 16 * 16);
-  const auto bytes = std::as_bytes(std::span(texels));
-  contents_.images.push_back({.first_byte = contents_.image_data.size(),
-                              .size_bytes = bytes.size(),
-                              .width = width,
-                              .height = height,
-                              .level_count = 1,
-                              .format = pack::ImageFormat::rgba8_unorm});
+  image.first_byte = contents_.image_data.size();
+  image.size_bytes = bytes.size();
+  contents_.images.push_back(image);
   contents_.image_data.insert(contents_.image_data.end(), bytes.begin(), bytes.end());
-  contents_.textures.push_back({{{{1, 0, 0}, {0, 1, 0}}}, static_cast<uint32_t>(contents_.images.size() - 1), pack::Wrap::clamp_to_edge,
-                                pack::Wrap::clamp_to_edge, pack::Filter::nearest, pack::Filter::nearest});
+  contents_.textures.push_back({uv_transform, static_cast<uint32_t>(contents_.images.size() - 1),
+                                pack::Wrap::clamp_to_edge, pack::Wrap::clamp_to_edge, pack::Filter::nearest,
+                                pack::Filter::nearest});
   return static_cast<uint32_t>(contents_.textures.size() - 1);
+}
+
+uint32_t Scene::add_texture(uint32_t width, uint32_t height, const std::vector<uint32_t>& texels,
+                            const UvTransform& uv_transform) {
+  const pack::Image image{.width = width, .height = height, .level_count = 1, .format = pack::ImageFormat::rgba8_unorm};
+  return add_texture(image, std::as_bytes(std::span(texels)), uv_transform);
 }
 
 void Scene::add_batch(const Mesh& mesh, size_t first, size_t end, uint32_t material, const glm::mat4& world_from_local,
@@ -179,17 +182,17 @@ void Scene::add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from
   for (const Vertex& vertex : mesh.vertices) {
     const glm::vec3 axis = std::abs(vertex.normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     contents_.positions.push_back({vertex.position});
-    contents_.vertex_attributes.push_back({.normal_ls = pack::encode_normal(vertex.normal),
-                                           .tangent_ls = pack::encode_tangent(
-                                               glm::vec4(glm::normalize(glm::cross(axis, vertex.normal)), 1)),
-                                           .uv0 = vertex.uv,
-                                           .uv1 = vertex.uv,
-                                           .color = 0xFFFFFFFFu});
+    contents_.vertex_attributes.push_back(
+        {.normal_ls = pack::encode_normal(vertex.normal),
+         .tangent_ls = pack::encode_tangent(glm::vec4(glm::normalize(glm::cross(axis, vertex.normal)), 1)),
+         .uv0 = vertex.uv,
+         .uv1 = vertex.uv,
+         .color = 0xFFFFFFFFu});
   }
   const glm::mat4 rows = glm::transpose(world_from_local);
   contents_.meshes.push_back({.first_batch = static_cast<uint32_t>(contents_.batches.size())});
-  contents_.instances.push_back({.world_from_local = {rows[0], rows[1], rows[2]},
-                                 .mesh = static_cast<uint32_t>(contents_.meshes.size() - 1)});
+  contents_.instances.push_back(
+      {.world_from_local = {rows[0], rows[1], rows[2]}, .mesh = static_cast<uint32_t>(contents_.meshes.size() - 1)});
   const auto instance = static_cast<uint32_t>(contents_.instances.size() - 1);
   for (size_t first = 0; first < mesh.indices.size(); first += batch_indices)
     add_batch(mesh, first, std::min(first + batch_indices, mesh.indices.size()), material, world_from_local, instance);

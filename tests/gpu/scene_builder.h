@@ -4,6 +4,7 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "pack_file.h"
@@ -33,13 +34,21 @@ pack::Light spot_light(const glm::vec3& position_ws, const glm::vec3& direction,
                        float inner_rad, float outer_rad);
 pack::Light directional_light(const glm::vec3& direction, float illuminance_lx);
 
+/// Rows of a texture's matrix from the mesh's uv to the image's.
+using UvTransform = std::array<glm::vec3, 2>;
+constexpr UvTransform uv_identity = {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
+
 class Scene {
  public:
   std::vector<pack::Light> lights;
 
   uint32_t add_material(const pack::Material& material);
   /// One level of linear RGBA8, sampled at the nearest texel. Returns the texture's number.
-  uint32_t add_texture(uint32_t width, uint32_t height, const std::vector<uint32_t>& texels);
+  uint32_t add_texture(uint32_t width, uint32_t height, const std::vector<uint32_t>& texels,
+                       const UvTransform& uv_transform = uv_identity);
+  /// Size, levels and format as `image` says; sampled at the nearest texel.
+  uint32_t add_texture(pack::Image image, std::span<const std::byte> bytes,
+                       const UvTransform& uv_transform = uv_identity);
   /// Adds a mesh, in batches of up to 128 triangles, placed by a matrix that may mirror.
   void add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from_local = glm::mat4(1.0f));
   /// Written to a file, which is gone when this returns, and opened.

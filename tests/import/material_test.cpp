@@ -2,6 +2,9 @@
 // Materials, textures and how images are found.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "gltf_builder.h"
 
 namespace chandelier::baker::test {
@@ -123,6 +126,80 @@ TEST(Texture, StoresAnImageOncePerUse) {
   EXPECT_EQ(material.base_color_texture, material.emissive_texture);
   EXPECT_EQ(material.metallic_roughness_texture, material.occlusion_texture);
   EXPECT_NE(material.base_color_texture, material.occlusion_texture);
+}
+
+TEST(Texture, StoresIdenticalFilesOnceAndDecodesThemOnce) {
+  GltfBuilder gltf = with_texture({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                                   {"emissiveTexture", {{"index", 1}}},
+                                   {"occlusionTexture", {{"index", 1}}}});
+  gltf.json["images"].push_back({{"uri", "data:image/png;base64," + base64(kPng)}, {"name", "red again"}});
+  gltf.json["textures"].push_back({{"source", 1}});
+  Report report;
+  Warnings warnings;
+  const pack::Contents pack = baker::bake(gltf.import(), {}, Progress(false), report, warnings);
+  ASSERT_EQ(pack.images.size(), 2u);  // as colour and as data
+  const pack::Material& material = pack.materials.at(0);
+  EXPECT_EQ(pack.textures.at(material.base_color_texture).image, pack.textures.at(material.emissive_texture).image);
+  EXPECT_NE(pack.textures.at(material.occlusion_texture).image, pack.textures.at(material.emissive_texture).image);
+  const auto images = std::find_if(report.passes.begin(), report.passes.end(),
+                                   [](const PassReport& pass) { return pass.name == "images"; });
+  ASSERT_NE(images, report.passes.end());
+  const std::map<std::string, double> counts(images->counts.begin(), images->counts.end());
+  EXPECT_EQ(counts.at("images"), 2);
+  EXPECT_EQ(counts.at("decoded"), 1);
+  EXPECT_EQ(counts.at("shared"), 2);
+}
+
+/// A scene without a file: one material whose base colour is image 0.
+Scene scene_with_image(const std::vector<std::uint8_t>& bytes) {
+  Scene scene;
+  scene.images = {{"image", "test: image", {}}};
+  scene.images[0].bytes = bytes;
+  scene.textures = {{}};
+  scene.materials = {{}};
+  scene.materials[0].base_color.texture = 0;
+  return scene;
+}
+
+TEST(Texture, KeepsAlphaApartWhereOnlyOneMaterialTestsIt) {
+  Scene scene = scene_with_image(kPng);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].masked = true;
+  const pack::Contents pack = bake_scene(std::move(scene), {});
+  EXPECT_EQ(pack.images.size(), 2u);
+}
+
+TEST(Texture, TransformsAreKeptAndTellTexturesApart) {
+  Scene scene = scene_with_image(kPng);
+  Material& material = scene.materials[0];
+  material.base_color.uv_transform = {glm::vec3(0, 2, 0.5f), glm::vec3(-1, 0, 0.25f)};
+  material.emissive_map.texture = 0;
+  const pack::Contents pack = bake_scene(std::move(scene), {});
+  ASSERT_EQ(pack.textures.size(), 2u);
+  ASSERT_EQ(pack.images.size(), 1u);
+  const pack::Texture& turned = pack.textures.at(pack.materials.at(0).base_color_texture);
+  EXPECT_EQ(turned.uv_transform[0], glm::vec3(0, 2, 0.5f));
+  EXPECT_EQ(turned.uv_transform[1], glm::vec3(-1, 0, 0.25f));
+  EXPECT_EQ(pack.textures.at(pack.materials.at(0).emissive_texture).uv_transform[0], glm::vec3(1, 0, 0));
+}
+
+TEST(Texture, CanBeLeftOut) {
+  Scene scene = scene_with_image({1, 2, 3});  // not even looked at
+  scene.materials[0].emissive = glm::vec3(5);
+  scene.materials[0].emissive_map.texture = 0;
+  BakeSettings settings;
+  settings.images.textures = TextureMode::none;
+  const pack::Contents pack = bake_scene(std::move(scene), settings);
+  EXPECT_TRUE(pack.images.empty());
+  EXPECT_TRUE(pack.textures.empty());
+  EXPECT_EQ(pack.materials.at(0).base_color_texture, pack::none);
+  EXPECT_EQ(pack.materials.at(0).emissive, glm::vec3(0));  // it glowed in places, not all over
+}
+
+TEST(Material, KeepsThatItIsUnlit) {
+  Scene scene = scene_with_image(kPng);
+  scene.materials[0].unlit = true;
+  EXPECT_EQ(bake_scene(std::move(scene), {}).materials.at(0).unlit, 1u);
 }
 
 void expect_red(const GltfBuilder& gltf) {
