@@ -137,7 +137,8 @@ double touched(const std::vector<WorldBatch>& batches, const WorldBatch& all) {
   for (int s = 0; s < 500; ++s) {
     glm::vec3 center;
     for (int axis = 0; axis < 3; ++axis) {
-      center[axis] = all.low[axis] + (all.high[axis] - all.low[axis]) * static_cast<float>(random() / 4294967296.0);
+      center[axis] = all.low[axis] + (all.high[axis] - all.low[axis]) *
+                                         static_cast<float>(static_cast<double>(random()) / 4294967296.0);
     }
     for (const WorldBatch& batch : batches) {
       const glm::vec3 nearest = glm::clamp(center, batch.low, batch.high);

@@ -15,7 +15,7 @@ namespace chandelier::baker::test {
 namespace {
 
 float between(std::mt19937& random, double low, double high) {
-  return static_cast<float>(low + (high - low) * (random() / 4294967296.0));
+  return static_cast<float>(low + (high - low) * (static_cast<double>(random()) / 4294967296.0));
 }
 
 glm::vec3 direction(std::mt19937& random) {
