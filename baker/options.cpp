@@ -194,8 +194,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
     app.parse(argc, argv);
     options.settings = settings_of(app);
     return options;
-  } catch (const CLI::CallForHelp& help) {
-    exit_code = app.exit(help);
+  } catch (const CLI::Success& answer) {  // --help, --version
+    exit_code = app.exit(answer);
   } catch (const CLI::ParseError& error) {
     std::cerr << "chandelier-bake: error: " << printable(error.what()) << " (--help explains)\n";
     exit_code = 2;

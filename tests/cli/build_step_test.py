@@ -36,6 +36,11 @@ class Report(BakeTool):
         version = re.search(r"project\(Chandelier VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
         self.assertEqual(report["version"], version)
 
+    def test_version(self):
+        done = self.run_bake("--version")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, r"^chandelier-bake \d+\.\d+\.\d+\n$")
+
     def test_a_dash_is_stdout_and_nothing_else_is_there(self):
         done = self.run_bake(*self.room(), "-o", self.pack, "--json", "-")
         self.assertEqual(done.returncode, 0, done.stderr)
