@@ -81,6 +81,15 @@ AnimationChannel read_channel(const Gltf& gltf, const Json& sampler, AnimationPa
   return out;
 }
 
+/// Whether nobody has said when and where its keys are: an accessor without a buffer view is all zeros.
+bool lacks_data(const Gltf& gltf, const Json& sampler) {
+  const auto lacks = [&](const char* key) {
+    const tinygltf::Accessor& accessor = gltf.model.accessors[sampler[key].get<std::size_t>()];
+    return accessor.bufferView < 0 && !accessor.sparse.isSparse;
+  };
+  return lacks("input") || lacks("output");
+}
+
 /// Nothing for a path that the pack cannot hold.
 std::optional<AnimationPath> path_of(const std::string& name) {
   if (name == "translation") return AnimationPath::translation;
@@ -103,6 +112,10 @@ Animation read_animation(const Gltf& gltf, const Json& json, const std::string& 
     const auto node = target["node"].get<std::uint32_t>();
     if (!in_scene[node]) continue;
     const auto sampler = channel["sampler"].get<std::size_t>();
+    if (lacks_data(gltf, json["samplers"][sampler])) {
+      warnings.add(gltf.file, here, "a channel whose keys have no data is skipped");
+      continue;
+    }
     out.channels.push_back(
         read_channel(gltf, json["samplers"][sampler], *path, here + ", sampler " + std::to_string(sampler), warnings));
     out.channels.back().node = node;

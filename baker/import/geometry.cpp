@@ -56,13 +56,6 @@ void read_skin(const VertexSource& source, Primitive& out, std::vector<std::stri
   }
 }
 
-void warn_of_attributes(const tinygltf::Primitive& in, std::vector<std::string>& warnings) {
-  if (!in.targets.empty()) warnings.push_back("morph targets are ignored: the base mesh is baked");
-  if (in.attributes.contains("JOINTS_0") != in.attributes.contains("WEIGHTS_0")) {
-    warnings.push_back("JOINTS_0 and WEIGHTS_0 do not come together");
-  }
-}
-
 void read_triangles(const Gltf& gltf, std::size_t mesh, std::size_t number, bool skinned, const std::string& where,
                     ReadPrimitive& read) {
   const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
@@ -144,7 +137,7 @@ ReadPrimitive read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t num
     out.warnings.push_back(skip);
     return out;
   }
-  warn_of_attributes(in, out.warnings);
+  if (!in.targets.empty()) out.warnings.push_back("morph targets are ignored: the base mesh is baked");
   try {
     const std::string where = gltf.file + ": " + place_of_primitive(gltf, mesh, number);
     read_triangles(gltf, mesh, number, skinned, where, out);

@@ -259,7 +259,7 @@ void check_gltf(const Json& json, const std::string& file) {
   if (version.rfind("2.", 0) != 0) asset->bad("version", "is not 2.x", asset->json["version"]);
   asset->text("minVersion");
   const std::string least = asset->json.value("minVersion", "2.0");
-  if (least != "2.0") asset->bad("minVersion", "asks for more than glTF 2.0", least);
+  if (least.rfind("2.", 0) != 0) asset->bad("minVersion", "is not 2.x", least);
   check_section(json, json, "buffers", file, check_buffer);
   check_section(json, json, "bufferViews", file, check_buffer_view);
   check_section(json, json, "accessors", file, check_accessor);

@@ -229,6 +229,12 @@ void lint_gltf(const Json& json, const std::string& file, Warnings& warnings) {
   std::set<std::string> declared;
   const auto used = json.find("extensionsUsed");
   if (used != json.end()) declared.insert(used->begin(), used->end());
+  if (used != json.end() && declared.size() < used->size()) {
+    warnings.add(file, "extensionsUsed", "against glTF: it names an extension twice");
+  }
+  if (json["asset"].value("minVersion", "2.0") != "2.0") {
+    warnings.add(file, "asset", "asks for a later glTF than 2.0, which is all that is read");
+  }
   lint_tree(lint, json, declared);
 }
 

@@ -89,12 +89,15 @@ struct MeshLint {
       counts.insert(whole(accessor, "count", 0));
       attribute(name, accessor, quantized);
       if (!is_numbered_on(name, attributes)) say("attributes' sets are not numbered from 0");
+      const bool joints = name.rfind("JOINTS_", 0) == 0;
+      if (joints && !attributes.contains("WEIGHTS_" + name.substr(7))) say("JOINTS come without WEIGHTS");
+      if (name.rfind("WEIGHTS_", 0) == 0 && !attributes.contains("JOINTS_" + name.substr(8))) {
+        say("WEIGHTS come without JOINTS");
+      }
       if (accessor.contains("bufferView"))
         shared.push_back(whole(accessor, "bufferView", 0) << 32 | value.get<std::uint64_t>());
     }
     if (counts.size() > 1) say("a primitive's attributes have different counts");
-    if (attributes.contains("JOINTS_0") != attributes.contains("WEIGHTS_0"))
-      say("JOINTS_0 and WEIGHTS_0 do not come together");
     if (primitive.contains("indices")) indices(lint.entry("accessors", primitive["indices"].get<std::size_t>()));
     if (!primitive.contains("targets") || !primitive["targets"].is_array()) return;
     for (const Json& each : primitive["targets"]) target(each, attributes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a .gltf or .glb: container, JSON, extensions, buffers. tinygltf turns the checked JSON into structs; files and
 // data URIs are read here, since tinygltf reads past the end of short buffers and loses the place of an error.
+#include <cmath>
 #include <cstring>
 #include <set>
 
@@ -44,7 +45,7 @@ Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& f
     if (number == 0) chunks.json = data;
     if (number == 1 && type == kBinChunk) chunks.bin = data;
     if (size % 4 != 0) warnings.add(file, where.substr(file.size() + 2), "its length is not a multiple of 4");
-    if (number > 1 && (type == kBinChunk || type == kJsonChunk)) {
+    if ((number > 1 && type == kBinChunk) || (number > 0 && type == kJsonChunk)) {
       warnings.add(file, where.substr(file.size() + 2), "a second or misplaced chunk is ignored");
     }
     at += 8 + size;
@@ -77,6 +78,30 @@ Json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
     std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1, ..."
     what = what.substr(what.find(']') == std::string::npos ? 0 : what.find(']') + 2);
     fail(file, "is not a glTF: " + shortened(what, 200));
+  }
+}
+
+void make_integer(Json& json) {
+  if (!json.is_number_float()) return;
+  const double number = json.get<double>();
+  if (number >= 0 && number < 9e15 && number == std::floor(number)) json = static_cast<std::uint64_t>(number);
+}
+
+/// JSON makes no difference between 1 and 1.0, but tinygltf does: whole numbers, of the keys that ask for them, become
+/// so.
+void make_integers(Json& json) {
+  static const std::set<std::string> kKeys = {
+      "attributes", "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride", "camera",
+      "children",   "componentType", "count",      "index",      "indices",    "input",      "joints",
+      "material",   "mesh",          "mode",       "node",       "nodes",      "output",     "sampler",
+      "scene",      "skeleton",      "skin",       "source",     "target",     "texCoord"};
+  if (json.is_array() && !json.empty() && !json[0].is_structured()) return;  // of numbers
+  for (auto it = json.begin(); json.is_structured() && it != json.end(); ++it) {
+    if (it->is_structured()) make_integers(*it);
+    if (!json.is_object() || !kKeys.contains(it.key())) continue;
+    make_integer(*it);
+    if (!it->is_structured()) continue;
+    for (Json& each : *it) make_integer(each);
   }
 }
 
@@ -247,6 +272,7 @@ Gltf read_gltf(const std::filesystem::path& path, Warnings& warnings) {
   gltf.json = parse_json(chunks.json, gltf.file);
   if (chunks.json[0] == 0xEF) warnings.add(gltf.file, "JSON", "against glTF: it begins with a byte order mark");
   if (!gltf.json.is_object()) fail(gltf.file, "is not a glTF: the JSON is not an object");
+  make_integers(gltf.json);
   check_extensions(gltf.json, gltf.file, warnings);
   check_gltf(gltf.json, gltf.file);
   lint_gltf(gltf.json, gltf.file, warnings);

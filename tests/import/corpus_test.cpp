@@ -91,6 +91,8 @@ const std::map<std::string, std::string> kHarmless = {
     {"ACCESSOR_VECTOR3_NON_UNIT", "normals and tangents are made unit length"},
     {"IMAGE_DATA_INVALID", "an error where something drawn uses it; else not read"},
     {"IMAGE_UNEXPECTED_EOS", "an error where something drawn uses it; else not read"},
+    {"IMAGE_MIME_TYPE_INVALID", "an image's own bytes say what it is"},
+    {"INVALID_URI", "an error where something drawn uses it; else not read"},
     {"IO_ERROR", "an error where something drawn uses it; else not read"}};
 
 /// The validator's errors in a report, each code once.

@@ -84,17 +84,16 @@ TEST(Draco, IsRefusedWhereItsNumbersDoNotFit) {
   CompressedBox box;
   EXPECT_EQ(box.error(), "");
   const Json good = box.json;
-  Json& primitive = box.json["meshes"][0]["primitives"][0];
-  const auto position = primitive["attributes"]["POSITION"].get<std::size_t>();
+  const auto primitive = [&]() -> Json& { return box.json["meshes"][0]["primitives"][0]; };
   const std::string at = ", primitive 0, KHR_draco_mesh_compression";
-  box.json["accessors"][position]["count"] = 23;
+  box.json["accessors"][primitive()["attributes"]["POSITION"].get<std::size_t>()]["count"] = 23;
   EXPECT_NE(box.error().find("another number of vertices than its accessors, which have 23 (24)"), std::string::npos);
   box.json = good;
-  box.json["accessors"][primitive["indices"].get<std::size_t>()]["count"] = 39;
+  box.json["accessors"][primitive()["indices"].get<std::size_t>()]["count"] = 39;
   EXPECT_NE(box.error().find("another number of triangle corners than its accessors, which have 39 (36)"),
             std::string::npos);
   box.json = good;
-  primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"]["POSITION"] = 77;
+  primitive()["extensions"]["KHR_draco_mesh_compression"]["attributes"]["POSITION"] = 77;
   EXPECT_NE(box.error().find(at + ", attribute POSITION: Draco stream has no such attribute (77)"), std::string::npos);
   box.json = good;
   box.stream[0] = 'X';

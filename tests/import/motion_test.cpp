@@ -246,7 +246,7 @@ TEST(Animation, IsRefusedWhereItCannotBePlayed) {
         [](GltfBuilder& g) {
           sampler(g)["output"] = g.add_positions({0, 0, 0, 1, 0, 0});
         },
-        "animation 0 'wave', sampler 0, output: accessor 5 has the wrong type (3 components)"},
+        "animation 0 'wave', sampler 0, output: accessor 4 has the wrong type (3 components)"},
        {"zero rotation",
         [](GltfBuilder& g) {
           sampler(g)["output"] = g.add_floats({0, 0, 0, 1, 0, 0, 0, 0}, "VEC4", 4);
