@@ -201,6 +201,10 @@ void Scene::add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from
 pack::File Scene::open() const {
   pack::Contents contents = contents_;
   contents.lights = lights;
+  for (pack::Light& light : contents.lights) {  // also around a spot light's cone
+    light.bounds_center_ws = light.position_ws;
+    light.bounds_radius_m = light.range_m;
+  }
   const auto order = [&](const pack::BatchInstance& candidate) {
     const uint32_t material = contents.batches[candidate.batch].material;
     return std::pair(contents.materials[material].alpha_mode == pack::AlphaMode::mask, material);
