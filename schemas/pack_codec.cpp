@@ -20,7 +20,7 @@ namespace {
 // Levels of zstd. Records are few and read by many, so they get the highest one that needs no special memory; image
 // data and text are many and gain little. Layouts are chosen on a sample with a level that ranks them alike.
 constexpr int record_level = 19, byte_level = 9, trial_level = 9;
-constexpr std::size_t sample_bytes = std::size_t{1} << 20;
+constexpr std::size_t sample_bytes = std::size_t{1} << 18;
 
 constexpr std::size_t word = 4;
 
