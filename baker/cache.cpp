@@ -15,7 +15,7 @@
 namespace chandelier::baker {
 namespace {
 
-/// The build ids of the program and of every library that it has loaded: equal ones have equal code.
+/// The build ids of the program and of every library that it starts with: equal ones have equal code.
 std::string build_ids() {
   std::string out;
   const auto add_notes = [](dl_phdr_info* info, std::size_t, void* text) {
@@ -31,6 +31,8 @@ std::string build_ids() {
   dl_iterate_phdr(add_notes, &out);
   return out;
 }
+
+const std::string program_ids = build_ids();  // before main(), so that no module is among them
 
 /// What is wrong with an entry, or nothing; fills `notes`.
 std::string notes_fault(const pack::File& file, const std::string& name, std::string& notes) {
@@ -52,10 +54,9 @@ XXH3_state_t* hash_of(const std::shared_ptr<void>& state) {
 CacheKey::CacheKey(std::string stage)
     : stage_(std::move(stage)),
       state_(XXH3_createState(), [](void* state) { XXH3_freeState(static_cast<XXH3_state_t*>(state)); }) {
-  static const std::string builds = build_ids();
   XXH3_128bits_reset(hash_of(state_));
   add_text(stage_);
-  add_text(builds);
+  add_text(program_ids);
   add(pack::schema_hash);
 }
 

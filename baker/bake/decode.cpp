@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG and JPEG through OpenImageIO.
+// Checks PNG and JPEG files and has them decoded by chandelier_images.so, which is loaded for the first of them.
 #include "decode.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string_view>
 
 #include "../error.h"
+#include "decode_module.h"
 #include "jpeg.h"
 #include "pack_schema.h"
 #include "png.h"
@@ -51,6 +54,20 @@ std::vector<std::uint8_t> to_rgba(std::vector<std::uint8_t>&& in, std::size_t te
   return out;
 }
 
+/// Beside the program, in the build folder as where it is installed.
+std::filesystem::path module_path() {
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  return (folder / CHANDELIER_MODULE_FOLDER / "chandelier_images.so").lexically_normal();
+}
+
+DecodeFunction load_decoder() {
+  const std::filesystem::path path = module_path();
+  void* module = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  void* decoder = module ? dlsym(module, decode_symbol) : nullptr;
+  if (!decoder) fail(path.string(), "cannot be loaded, and without it no image: " + shortened(dlerror(), 200));
+  return *static_cast<const DecodeFunction*>(decoder);
+}
+
 }  // namespace
 
 void check_image_size(std::int64_t width, std::int64_t height, const std::string& where) {
@@ -67,28 +84,24 @@ Texels decode_image(const EncodedImage& image) {
   if (is_jpeg(image)) check_jpeg(image.bytes, image.where);
   const std::vector<std::uint8_t> png = is_png(image) ? essential_png(image.bytes, image.where) : Bytes();
   const std::vector<std::uint8_t>& bytes = is_png(image) ? png : image.bytes;
-  OIIO::ImageSpec hints;
-  hints.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not premultiplied
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  void* proxy = &memory;  // among the hints: the JPEG reader forgets open()'s own argument
-  hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(is_png(image) ? "image.png" : "image.jpg", &hints, &memory);
-  if (!input) fail(image.where, "cannot be decoded: " + shortened(OIIO::geterror(), 200));
-  input->threads(1);  // images are decoded side by side already
-  const OIIO::ImageSpec& spec = input->spec();
-  check_image_size(spec.width, spec.height, image.where);
-  if (spec.nchannels < 1 || spec.nchannels > 4) {
-    fail(image.where, "cannot be decoded: not 1 to 4 channels (" + std::to_string(spec.nchannels) + ")");
+  static const DecodeFunction decode = load_decoder();
+  DecodedImage decoded = decode(bytes, is_png(image), pack::max_image_size);
+  if (decoded.fault.empty()) check_image_size(decoded.width, decoded.height, image.where);
+  if (decoded.fault.empty() && decoded.values.empty()) {
+    decoded.fault = "not 1 to 4 channels (" + std::to_string(decoded.channels) + ")";
   }
-  const std::size_t texels = std::size_t(spec.width) * std::size_t(spec.height);
-  const auto channels = static_cast<std::size_t>(spec.nchannels);
-  std::vector<std::uint8_t> values(texels * channels);
-  // libjpeg goes on with grey after damage, and only warns: the reader keeps its first warning as its error.
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, values.data()) || input->has_error()) {
-    fail(image.where, "cannot be decoded: " + shortened(input->geterror(), 200));
-  }
-  return {static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
-          to_rgba(std::move(values), texels, channels)};
+  if (!decoded.fault.empty()) fail(image.where, "cannot be decoded: " + shortened(decoded.fault, 200));
+  return {static_cast<std::uint32_t>(decoded.width), static_cast<std::uint32_t>(decoded.height),
+          to_rgba(std::move(decoded.values), std::size_t(decoded.width) * std::size_t(decoded.height),
+                  static_cast<std::size_t>(decoded.channels))};
+}
+
+const std::string& decoder_code() {
+  static const std::string code = [] {
+    std::ifstream file(module_path(), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  }();
+  return code;
 }
 
 std::uint64_t claimed_texels(const EncodedImage& image) {

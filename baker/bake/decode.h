@@ -2,6 +2,8 @@
 // PNG and JPEG bytes into texels.
 #pragma once
 
+#include <string>
+
 #include "../scene.h"
 #include "mips.h"
 
@@ -12,6 +14,9 @@ void check_image_size(std::int64_t width, std::int64_t height, const std::string
 
 /// Throws Error for what is neither PNG nor JPEG, is damaged or too large.
 Texels decode_image(const EncodedImage& image);
+
+/// What decodes, as it lies on the disk: equal ones decode alike. Empty where it is missing.
+const std::string& decoder_code();
 
 /// Width times height as the header claims, unchecked; 0 where there is none.
 std::uint64_t claimed_texels(const EncodedImage& image);

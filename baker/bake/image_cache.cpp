@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "decode.h"
+
 namespace chandelier::baker {
 namespace {
 
@@ -38,6 +40,7 @@ std::string image_entry(const EncodedImage& image, const std::vector<ImageReques
                         const ImageSettings& settings) {
   const auto& [textures, max_size] = settings;
   CacheKey key("image");
+  key.add_text(decoder_code());
   key.add_text({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
   key.add(textures);
   key.add(max_size);

@@ -30,7 +30,7 @@ function(chandelier_bake target)
   add_custom_command(
     OUTPUT ${output}
     COMMAND Chandelier::bake ${sources} -o ${output} --depfile ${output}.d --quiet ${arg_OPTIONS}
-    DEPENDS ${sources} $<TARGET_FILE:Chandelier::bake>
+    DEPENDS ${sources} $<TARGET_FILE:Chandelier::bake> $<TARGET_FILE:Chandelier::images>
     DEPFILE ${output}.d
     COMMENT "Baking ${name}"
     VERBATIM)

@@ -6,11 +6,14 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Chandelier)
 
 set_target_properties(chandelier-bake PROPERTIES EXPORT_NAME bake)
 set_target_properties(chandelier-inspect PROPERTIES EXPORT_NAME inspect)
+set_target_properties(chandelier_images PROPERTIES EXPORT_NAME images)
 add_executable(Chandelier::bake ALIAS chandelier-bake)
 add_executable(Chandelier::inspect ALIAS chandelier-inspect)
+add_library(Chandelier::images ALIAS chandelier_images)
 include(ChandelierBake)  # for a project that has Chandelier as a folder of its own
 
 install(TARGETS chandelier-bake chandelier-inspect EXPORT ChandelierTargets RUNTIME)
+install(TARGETS chandelier_images EXPORT ChandelierTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/chandelier)
 install(EXPORT ChandelierTargets NAMESPACE Chandelier:: DESTINATION ${package_dir})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/ChandelierConfig.cmake.in
                               ${CMAKE_BINARY_DIR}/package/ChandelierConfig.cmake INSTALL_DESTINATION ${package_dir})

@@ -41,6 +41,19 @@ class Installed(unittest.TestCase):
             code, said = run(self.prefix / "bin" / name, "--help")
             self.assertEqual(code, 0, said)
 
+    def test_images_and_nothing_else_need_the_module(self):
+        moved = self.build_folder.parent / "moved"
+        shutil.copytree(self.prefix, moved)
+        bake = (moved / "bin" / "chandelier-bake", self.project / "room.gltf", "-o", moved / "room.chandelier")
+        self.assertEqual(run(*bake)[0], 0)
+        (module,) = moved.rglob("chandelier_images.so")
+        module.unlink()
+        code, said = run(*bake)
+        self.assertEqual((code, said.count("\n")), (1, 1), said)
+        self.assertIn(f"chandelier-bake: error: {module}: cannot be loaded", said)
+        code, said = run(*bake, "--textures", "none")
+        self.assertEqual(code, 0, said)
+
     def test_schemas_and_licence_are_there(self):
         shared = self.prefix / "share"
         for path in (ROOT / "schemas").glob("*.schema.json"):
