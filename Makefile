@@ -64,7 +64,7 @@ bench: setup
 	  --report $(BUILD)/bench/atrium
 
 SECONDS := 60
-FUZZ_TARGETS := import pack
+FUZZ_TARGETS := import pack cache
 CORPUS := tests/fuzz/corpus
 DATA := ../shared/data
 
