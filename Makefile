@@ -9,7 +9,7 @@ PLAY := $(BUILD)/bin/chandelier-play
 BAKE := $(BUILD)/bin/chandelier-bake
 CPP_FILES := $(shell git ls-files '*.cpp' '*.h' 2>/dev/null)
 
-.PHONY: help setup build demo test test-mesa25 bench fuzz format portable clean
+.PHONY: help setup build demo test test-mesa25 bench bench-baker fuzz format portable clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -18,7 +18,9 @@ help:
 	@echo "make test         build and run every test"
 	@echo "make build        build into build/bin/"
 	@echo "make test-mesa25  run the GPU tests on Mesa 25, unpacked privately into build/mesa25"
-	@echo "make bench        time the selection of light clusters, and the atrium's stages (on Mesa 25 where it can be had)"
+	@echo "make bench        measure the baker beside gltfpack, how packs open, how batches and hierarchies compare, the"
+	@echo "                  selection of light clusters, and the atrium's stages (on Mesa 25 where it can be had)"
+	@echo "make bench-baker  the baker's part of it alone, with a plot over the size of the scene, in build/bench/bake/"
 	@echo "make fuzz         look for inputs that break the importer, the pack reader or the cache, SECONDS=60 each; what is found is kept"
 	@echo "make portable     build a chandelier-play that needs only glibc and a Vulkan loader, in build/portable/bin/"
 	@echo "make format       clang-format every C++ file"
@@ -55,13 +57,23 @@ demo: setup
 
 # On Mesa 25 where it can be had: it runs only the taken side of a branch, as GPUs do. A GPU, where there is one, is hidden
 # by that; use chandelier-play itself there.
-bench: setup
+bench:
+	@setup/install.sh setup/packages-bench.txt
 	@$(MAKE) --no-print-directory build
+	@$(MAKE) --no-print-directory $(BUILD)/demo/atrium.glb
+	@$(MAKE) --no-print-directory bench-baker
 	@$(MAKE) --no-print-directory $(BUILD)/demo/atrium.chandelier
 	$(BUILD)/bin/chandelier-bench
 	variables="$$(setup/mesa25.sh $(BUILD)/mesa25 || true)"; env $$variables \
 	  $(PLAY) $(BUILD)/demo/atrium.chandelier --compare reference,lightcluster --size $(DEMO_SIZE) --frames 9 \
 	  --report $(BUILD)/bench/atrium
+
+# Needs 8 GiB of free disk: its largest city has 20 million triangles.
+bench-baker:
+	$(PYTHON) tests/bench/bake_bench.py --bake $(BAKE) --out $(BUILD)/bench/bake --data $(DATA)
+	$(BUILD)/bin/chandelier-pack-bench
+	@scenes="$(BUILD)/demo/atrium.glb $(wildcard $(DATA)/scenes/*/*.gltf)"; $(BUILD)/bin/chandelier-batch-bench $$scenes
+	$(BUILD)/bin/chandelier-bvh-bench
 
 SECONDS := 60
 FUZZ_TARGETS := import pack cache

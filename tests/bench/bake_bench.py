@@ -72,7 +72,7 @@ def glb_or_gltf_buffers(path):
 def section_bytes(inspect, pack):
     """{section: stored bytes}."""
     report = json.loads(subprocess.run([inspect, "--json", pack], check=True, capture_output=True).stdout)
-    return {s["name"]: s["size_bytes"] for s in report["sections"]}
+    return {s["name"]: s["stored_bytes"] for s in report["sections"]}
 
 
 class Bench:
