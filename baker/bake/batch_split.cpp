@@ -1,131 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binned SAH (Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies) with a price for batches that
-// are not full: a group of n triangles is expected to become ⌈n / most⌉ batches, and each costs as much as some
-// triangles. So splits fall where the left side is a whole number of batches, unless a gap elsewhere is worth more.
+// Binned SAH with a price for batches that are not full: a group of n triangles is expected to become ⌈n / most⌉
+// batches, and each costs as much as some triangles. So splits fall where the left side is a whole number of batches,
+// unless a gap elsewhere is worth more. Large groups are cut by a sample, where a batch more or less does not matter.
 #include "batch_split.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_invoke.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <span>
+
+#include "sah_bins.h"
 
 namespace chandelier::baker {
 namespace {
 
-using Boxes = std::span<TriangleBox>;
+using namespace sah;
 
-constexpr int kMostBins = 32;
-constexpr std::size_t kParallelSplit = 8192, kParallelBins = 65536;
-constexpr double kBatchCost = 0.5;  // of testing and drawing a batch, in full batches' triangles
+using Boxes = std::span<BvhItem>;
 
-float center(const TriangleBox& box, int axis) {
-  return 0.5f * box.low[axis] + 0.5f * box.high[axis];
-}
-
-std::uint32_t number_of(const TriangleBox& box) {
-  return std::bit_cast<std::uint32_t>(box.low[3]);
-}
-
-struct Box {
-  float low[4] = {INFINITY, INFINITY, INFINITY, 0}, high[4] = {-INFINITY, -INFINITY, -INFINITY, 0};
-
-  void include(const float* other_low, const float* other_high) {
-    for (int i = 0; i < 4; ++i) low[i] = other_low[i] < low[i] ? other_low[i] : low[i];
-    for (int i = 0; i < 4; ++i) high[i] = other_high[i] > high[i] ? other_high[i] : high[i];
-  }
-
-  double half_area() const {
-    const double x = double{high[0]} - low[0], y = double{high[1]} - low[1], z = double{high[2]} - low[2];
-    return x >= 0 ? x * y + y * z + z * x : 0;
-  }
-};
-
-/// Where the triangles' centres are cut into bins, along each axis.
-struct BinRule {
-  float low[3], per_size[3];  // both 0 where all centres are the same, or too far apart for a float
-  int bins;
-
-  int bin_of(const TriangleBox& box, int axis) const {
-    return std::min(static_cast<int>((center(box, axis) - low[axis]) * per_size[axis]), bins - 1);
-  }
-};
-
-BinRule bin_rule(Boxes boxes) {
-  const auto bounds_of = [](const Boxes part, Box sum) {
-    for (const TriangleBox& box : part) {
-      const float at[4] = {center(box, 0), center(box, 1), center(box, 2), 0};
-      sum.include(at, at);
-    }
-    return sum;
-  };
-  Box centers;
-  if (boxes.size() < kParallelBins) {
-    centers = bounds_of(boxes, {});
-  } else {
-    centers = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, boxes.size(), 16384), Box(),
-        [&](const auto& range, const Box& sum) { return bounds_of(boxes.subspan(range.begin(), range.size()), sum); },
-        [](Box a, const Box& b) { return a.include(b.low, b.high), a; });
-  }
-  BinRule rule{};
-  rule.bins = boxes.size() > 2048 ? 16 : kMostBins;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float size = centers.high[axis] - centers.low[axis];
-    const float per_size = static_cast<float>(rule.bins) / size;
-    if (!std::isfinite(size) || !std::isfinite(per_size)) continue;
-    rule.low[axis] = centers.low[axis];
-    rule.per_size[axis] = per_size;
-  }
-  return rule;
-}
-
-struct Bins {
-  Box box[3][kMostBins];
-  std::uint32_t count[3][kMostBins] = {};
-
-  void include(const Boxes boxes, const BinRule& rule) {
-    for (const TriangleBox& triangle : boxes) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const int bin = rule.bin_of(triangle, axis);
-        box[axis][bin].include(triangle.low, triangle.high);
-        ++count[axis][bin];
-      }
-    }
-  }
-
-  void include(const Bins& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < kMostBins; ++i) {
-        box[axis][i].include(other.box[axis][i].low, other.box[axis][i].high);
-        count[axis][i] += other.count[axis][i];
-      }
-    }
-  }
-};
-
-Bins fill_bins(Boxes boxes, const BinRule& rule) {
-  Bins bins;
-  if (boxes.size() < kParallelBins) {
-    bins.include(boxes, rule);
-    return bins;
-  }
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, boxes.size(), 16384), bins,
-      [&](const auto& range, Bins sum) {
-        sum.include(boxes.subspan(range.begin(), range.size()), rule);
-        return sum;
-      },
-      [](Bins a, const Bins& b) { return a.include(b), a; });
-}
+constexpr std::size_t kParallelSplit = 8192;  // triangles, from which on two threads go on
+constexpr std::size_t kSamples = 4096;        // of a group of twice as many triangles or more
+constexpr double kBatchCost = 0.5;            // of testing and drawing a batch, in full batches' triangles
+constexpr float kBatchBegin = 1;              // what area_m2 says of a batch's first triangle
 
 /// `left` triangles go left: those of the bins below `bin`, and if that is not enough, the lowest centres of `bin`.
 struct Split {
-  int axis = -1, bin = 0;
-  std::size_t left = 0;
+  int axis = -1;
+  std::size_t bin = 0, left = 0;
   double cost = INFINITY;
 };
 
@@ -136,93 +38,110 @@ double weight(std::size_t triangles, std::size_t most) {
 }
 
 /// The best split along an axis: between two bins, or inside one where the left side is a whole number of batches;
-/// there both sides are charged for the whole bin.
-void find_split(const Bins& bins, int bin_count, int axis, std::size_t total, std::size_t most, Split& best) {
-  double area_from[kMostBins + 1] = {};
+/// there both sides are charged for the whole bin. Of samples, each in a batch of its own, only between bins.
+void find_split(const AxisBins& bins, std::size_t bin_count, int axis, std::size_t total, std::size_t most,
+                Split& best) {
+  std::array<double, kMostBins> area_from;
   Box right;
-  for (int i = bin_count; i-- > 0;) {
-    right.include(bins.box[axis][i].low, bins.box[axis][i].high);
-    area_from[i] = right.half_area();
+  for (std::size_t i = bin_count; i-- > 0;) {
+    right.add(bins[i].low, bins[i].high);
+    area_from[i] = double{right.half_area()};
   }
-  const auto offer = [&](int bin, std::size_t count, double left_area, double right_area) {
-    const double cost = left_area * weight(count, most) + right_area * weight(total - count, most);
-    if (cost < best.cost) best = {axis, bin, count, cost};
+  const auto offer = [&](std::size_t bin, std::size_t count, double left_area) {
+    const double cost = left_area * weight(count, most) + area_from[bin] * weight(total - count, most);
+    if (cost < best.cost) best = {axis, bin, count, cost};  // false for NaN
   };
   Box left;
   std::size_t below = 0;
-  for (int i = 0; i < bin_count; ++i) {
-    const double left_area = left.half_area();
-    if (below > 0 && below < total) offer(i, below, left_area, area_from[i]);
-    left.include(bins.box[axis][i].low, bins.box[axis][i].high);
+  double left_area = 0;
+  for (std::size_t i = 0; i < bin_count; ++i) {
+    if (below > 0 && below < total) offer(i, below, left_area);
+    if (bins[i].items == 0) continue;
+    left.add(bins[i].low, bins[i].high);
+    left_area = double{left.half_area()};
     const std::size_t whole = (below / most + 1) * most;
-    below += bins.count[axis][i];
-    if (whole < below && whole < total) offer(i, whole, left.half_area(), area_from[i]);
+    below += bins[i].items;
+    if (most > 1 && whole < below && whole < total) offer(i, whole, left_area);
   }
 }
+
+Split find_split(Boxes boxes, const Binning& binning, std::size_t stride, std::size_t most) {
+  const std::array<AxisBins, 3> axes = fill_bins(boxes, binning, stride);
+  const std::size_t total = (boxes.size() + stride - 1) / stride;
+  Split best;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!binning.can_cut(axis)) continue;
+    find_split(axes[static_cast<std::size_t>(axis)], binning.bins, axis, total, stride > 1 ? 1 : most, best);
+  }
+  return best;
+}
+
+/// Two groups, and what the centres of each span.
+struct Halves {
+  std::size_t left = 0;
+  Box left_centres, right_centres;
+};
 
 /// Puts the left side first.
-void partition(Boxes boxes, const BinRule& rule, const Split& split) {
-  const auto middle = std::partition(boxes.begin(), boxes.end(),
-                                     [&](const TriangleBox& box) { return rule.bin_of(box, split.axis) < split.bin; });
-  const auto below = static_cast<std::size_t>(middle - boxes.begin());
-  if (below == split.left) return;
-  const auto end = std::partition(middle, boxes.end(),
-                                  [&](const TriangleBox& box) { return rule.bin_of(box, split.axis) == split.bin; });
-  std::nth_element(middle, boxes.begin() + static_cast<std::ptrdiff_t>(split.left), end,
-                   [&](const TriangleBox& a, const TriangleBox& b) {
-                     const float left = center(a, split.axis), right = center(b, split.axis);
-                     return left != right ? left < right : number_of(a) < number_of(b);
+Halves part(Boxes boxes, const Binning& binning, const Split& split, bool sampled) {
+  Halves out;
+  out.left = partition(boxes, binning, split.axis, split.bin, out.left_centres, out.right_centres);
+  if (sampled || out.left == split.left) return out;
+  Box below, above;
+  const Boxes rest = boxes.subspan(out.left);
+  const Boxes in_bin = rest.first(partition(rest, binning, split.axis, split.bin + 1, below, above));
+  const auto centre_of = [&](const BvhItem& box) { return box.low[split.axis] + box.high[split.axis]; };
+  std::nth_element(in_bin.begin(), in_bin.begin() + static_cast<std::ptrdiff_t>(split.left - out.left), in_bin.end(),
+                   [&](const BvhItem& a, const BvhItem& b) {
+                     const float left = centre_of(a), right = centre_of(b);
+                     return left != right ? left < right : a.number < b.number;
                    });
+  return {split.left, centres_of(boxes.first(split.left)), centres_of(boxes.subspan(split.left))};
 }
 
-void divide(Boxes boxes, std::size_t most) {
+Halves halve(Boxes boxes, const Box& centres, std::size_t most) {
+  const Binning binning(centres, kMostBins);
+  if (const std::size_t stride = boxes.size() / kSamples; stride > 1) {
+    const Split split = find_split(boxes, binning, stride, most);
+    if (split.axis >= 0) return part(boxes, binning, split, true);
+  }
+  const Split split = find_split(boxes, binning, 1, most);
+  if (split.axis >= 0) return part(boxes, binning, split, false);
+  // All centres in one place, or areas beyond a float: halves of whole batches, as they come.
+  return {((boxes.size() + most - 1) / most + 1) / 2 * most, centres, centres};
+}
+
+void divide(Boxes boxes, const Box& centres, std::size_t most) {
   if (boxes.size() <= most) {
-    boxes[0].high[3] = std::bit_cast<float>(1u);
+    boxes[0].area_m2 = kBatchBegin;
     return;
   }
-  const BinRule rule = bin_rule(boxes);
-  Split split;
-  {
-    const Bins bins = fill_bins(boxes, rule);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (rule.per_size[axis] > 0) find_split(bins, rule.bins, axis, boxes.size(), most, split);
-    }
-  }
-  if (split.axis < 0) {  // all centres in one place: halves of whole batches, as they come
-    split.left = ((boxes.size() + most - 1) / most + 1) / 2 * most;
-  } else {
-    partition(boxes, rule, split);
-  }
-  const Boxes left = boxes.first(split.left), right = boxes.subspan(split.left);
+  const Halves halves = halve(boxes, centres, most);
+  const Boxes left = boxes.first(halves.left), right = boxes.subspan(halves.left);
   if (boxes.size() < kParallelSplit) {
-    divide(left, most);
-    divide(right, most);
+    divide(left, halves.left_centres, most);
+    divide(right, halves.right_centres, most);
   } else {
-    tbb::parallel_invoke([&] { divide(left, most); }, [&] { divide(right, most); });
+    tbb::parallel_invoke([&] { divide(left, halves.left_centres, most); },
+                         [&] { divide(right, halves.right_centres, most); });
   }
 }
 
 }  // namespace
 
-TriangleBox triangle_box(const float* a, const float* b, const float* c, std::uint32_t triangle) {
-  TriangleBox box;
-  for (int i = 0; i < 3; ++i) {
-    box.low[i] = std::min({a[i], b[i], c[i]});
-    box.high[i] = std::max({a[i], b[i], c[i]});
-  }
-  box.low[3] = std::bit_cast<float>(triangle);
-  return box;
+BvhItem triangle_box(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, std::uint32_t triangle) {
+  return {glm::min(glm::min(a, b), c), triangle, glm::max(glm::max(a, b), c), 0};
 }
 
-BatchOrder split_into_batches(std::vector<TriangleBox>&& boxes, std::size_t most) {
+BatchOrder split_into_batches(std::vector<BvhItem>&& boxes, std::size_t most) {
   BatchOrder out;
   if (boxes.empty()) return out;
-  divide(boxes, most);
+  divide(boxes, centres_of(boxes), most);
   out.triangles.reserve(boxes.size());
-  for (const TriangleBox& box : boxes) {
-    if (std::bit_cast<std::uint32_t>(box.high[3]) == 1) out.counts.push_back(0);
+  for (const BvhItem& box : boxes) {
+    if (box.area_m2 == kBatchBegin) out.counts.push_back(0);
     ++out.counts.back();
-    out.triangles.push_back(number_of(box));
+    out.triangles.push_back(box.number);
   }
   boxes = {};
   return out;

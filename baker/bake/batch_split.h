@@ -5,16 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "bvh_item.h"
+
 namespace chandelier::baker {
 
-/// The box of a triangle. Four floats a side, so that both sides are one vector register each.
-struct TriangleBox {
-  float low[4] = {};
-  float high[4] = {};
-  // What the fourth floats hold, as bits: the triangle's number in low, whether it begins a batch in high.
-};
-
-TriangleBox triangle_box(const float* a, const float* b, const float* c, std::uint32_t triangle);
+/// The box of a triangle, with its number.
+BvhItem triangle_box(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, std::uint32_t triangle);
 
 struct BatchOrder {
   std::vector<std::uint32_t> triangles;  // numbers of all triangles, batch after batch, neighbours near each other
@@ -22,6 +18,6 @@ struct BatchOrder {
 };
 
 /// Batches of at most `most` triangles. The same on any number of threads.
-BatchOrder split_into_batches(std::vector<TriangleBox>&& boxes, std::size_t most);
+BatchOrder split_into_batches(std::vector<BvhItem>&& boxes, std::size_t most);
 
 }  // namespace chandelier::baker

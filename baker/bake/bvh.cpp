@@ -6,7 +6,6 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 #include <tbb/task_group.h>
 
 #include <algorithm>
@@ -14,17 +13,15 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
+
+#include "sah_bins.h"
 
 namespace chandelier::baker {
 namespace {
 
-/// Four floats in one register, with GCC's and Clang's operators; the last one is unused.
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
+using namespace sah;
 
-constexpr std::size_t kMostBins = 32;
 constexpr float kTraversalCost = 1;            // of a node, where an item costs 1
 constexpr std::size_t kMostTried = 5;          // up to here, every way to share the items out is tried
 constexpr std::size_t kBlockNodes = 16384;     // that one thread writes
@@ -32,98 +29,10 @@ constexpr std::size_t kParallelItems = 16384;  // from here on, a node's two sid
 constexpr std::size_t kSamples = 2048;         // of a node with twice as many items or more, to choose its cut from
 constexpr std::size_t kMostLeafItems = 15;     // what four bits hold
 constexpr int kSahDepth = 64;  // below, nodes are cut into halves, so that no input makes a tree of a path
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-Float4 min(Float4 a, Float4 b) {
-  return a < b ? a : b;
-}
-Float4 max(Float4 a, Float4 b) {
-  return a > b ? a : b;
-}
-
-struct Box {
-  Float4 low = {kInfinity, kInfinity, kInfinity, 0};
-  Float4 high = {-kInfinity, -kInfinity, -kInfinity, 0};
-
-  void add(Float4 other_low, Float4 other_high) {
-    low = min(low, other_low);
-    high = max(high, other_high);
-  }
-  void add(const Box& other) { add(other.low, other.high); }
-  float half_area() const {
-    const Float4 size = high - low, sides = size * __builtin_shufflevector(size, size, 1, 2, 0, 3);
-    return sides[0] + sides[1] + sides[2];
-  }
-};
-
-/// Two whole registers, and zero for what stands behind the components.
-Box box_of(const BvhItem& item) {
-  static_assert(offsetof(BvhItem, low) == 0 && offsetof(BvhItem, high) == 16);
-  const auto* bytes = reinterpret_cast<const std::byte*>(&item);
-  const Int4 three = {-1, -1, -1, 0};
-  Int4 low, high;
-  std::memcpy(&low, bytes, 16);
-  std::memcpy(&high, bytes + 16, 16);
-  return {std::bit_cast<Float4>(low & three), std::bit_cast<Float4>(high & three)};
-}
-
-/// Twice the centre of a box: as good, where only places among others matter.
-Float4 centre(const Box& box) {
-  return box.low + box.high;
-}
-
-/// Where along each axis a centre lies, in bins.
-struct Binning {
-  Float4 low, scale;
-  std::size_t bins;
-
-  Binning(const Box& centres, std::size_t items) : low(centres.low), bins(std::min(kMostBins, 4 + items / 16)) {
-    const Float4 size = centres.high - centres.low;
-    for (int axis = 0; axis < 4; ++axis) {
-      // Neither an axis without an extent nor one whose extent is beyond a float can be cut.
-      const float per_metre = static_cast<float>(bins) / size[axis];
-      scale[axis] = axis < 3 && std::isfinite(per_metre) ? per_metre : 0;
-    }
-  }
-  bool can_cut(int axis) const { return scale[axis] > 0; }
-  Int4 of(Float4 at) const {
-    const float last = static_cast<float>(bins - 1);
-    const Float4 most = {last, last, last, last}, least = {0, 0, 0, 0};
-    return __builtin_convertvector(max(min((at - low) * scale, most), least), Int4);  // 0 or last for NaN
-  }
-};
-
-/// Without a constructor, so that making many costs nothing; empty() is what they start from.
-struct Bin {
-  Float4 low, high;
-  std::uint32_t items;
-
-  static Bin empty() { return {Box().low, Box().high, 0}; }
-  float cost() const { return Box{low, high}.half_area() * static_cast<float>(items); }
-  void add(const Box& box, std::uint32_t count) {
-    low = min(low, box.low);
-    high = max(high, box.high);
-    items += count;
-  }
-  void add(const Bin& other) { add({other.low, other.high}, other.items); }
-};
-
-using AxisBins = std::array<Bin, kMostBins>;
-
-std::array<AxisBins, 3> fill_bins(std::span<const BvhItem> items, const Binning& binning, std::size_t stride) {
-  std::array<AxisBins, 3> axes;
-  for (AxisBins& bins : axes) std::fill_n(bins.begin(), binning.bins, Bin::empty());
-  for (std::size_t i = 0; i < items.size(); i += stride) {
-    const Box box = box_of(items[i]);
-    const Int4 at = binning.of(centre(box));
-    for (std::size_t axis = 0; axis < 3; ++axis) axes[axis][static_cast<std::size_t>(at[axis])].add(box, 1);
-  }
-  return axes;
-}
 
 struct Cut {
   int axis = -1;           // none
-  int bin = 0;             // the first of the second child
+  std::size_t bin = 0;     // the first of the second child
   float cost = kInfinity;  // area times items, of both children
 };
 
@@ -139,7 +48,7 @@ void find_cut(const AxisBins& bins, std::size_t count, int axis, Cut& best) {
     left.add(bins[i - 1]);
     if (left.items == 0) continue;
     const float cost = left.cost() + right_costs[i];
-    if (cost < best.cost) best = {axis, static_cast<int>(i), cost};  // false for NaN
+    if (cost < best.cost) best = {axis, i, cost};  // false for NaN
   }
 }
 
@@ -153,53 +62,15 @@ Cut find_cut(std::span<const BvhItem> items, const Binning& binning, std::size_t
   return best;
 }
 
-/// How many items, brought to the front, are on the first side of a cut; what their centres span, and the others'.
-/// Which side an item is on is as good as random, so nothing here branches on it.
-std::size_t partition(std::span<BvhItem> items, const Binning& binning, const Cut& cut, Box& left, Box& right) {
-  const Box nothing;
-  const int axis = cut.axis;
-  const float low = binning.low[axis], scale = binning.scale[axis], bin = static_cast<float>(cut.bin);
-  std::size_t count = 0;
-  for (BvhItem& item : items) {
-    const Float4 at = centre(box_of(item));
-    const bool is_left = (item.low[axis] + item.high[axis] - low) * scale < bin;
-    const Int4 left_mask = Int4{} - static_cast<std::int32_t>(is_left);
-    left.add(left_mask ? at : nothing.low, left_mask ? at : nothing.high);
-    right.add(left_mask ? nothing.low : at, left_mask ? nothing.high : at);
-    const BvhItem this_one = item;
-    item = items[count];
-    items[count] = this_one;
-    count += is_left;
-  }
-  return count;
-}
-
-Box centres_of(std::span<const BvhItem> items) {
-  // Least and greatest values: the same in any order.
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, items.size(), kParallelItems), Box(),
-      [&](const auto& range, Box box) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          const Float4 at = centre(box_of(items[i]));
-          box.add(at, at);
-        }
-        return box;
-      },
-      [](Box a, const Box& b) {
-        a.add(b);
-        return a;
-      });
-}
-
 /// How many items, brought to the front, the first child gets; 0 for a leaf of more items than add_few() takes.
 std::size_t cut(std::span<BvhItem> items, const Box& centres, int depth, Box& left, Box& right) {
-  const Binning binning(centres, items.size());
+  const Binning binning(centres, std::min(kMostBins, 4 + items.size() / 16));
   Cut best;
   if (depth < kSahDepth) {
     best = find_cut(items, binning, std::max<std::size_t>(1, items.size() / kSamples));
     if (best.axis < 0 && items.size() >= 2 * kSamples) best = find_cut(items, binning, 1);
   }
-  const std::size_t count = best.axis < 0 ? 0 : partition(items, binning, best, left, right);
+  const std::size_t count = best.axis < 0 ? 0 : partition(items, binning, best.axis, best.bin, left, right);
   if (count > 0 && count < items.size()) return count;
   // No plane parts the centres, or areas are beyond a float.
   if (items.size() <= kMostLeafItems) return 0;

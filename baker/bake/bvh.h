@@ -8,19 +8,10 @@
 #include <vector>
 
 #include "../report.h"
+#include "bvh_item.h"
 #include "pack_schema.h"
 
 namespace chandelier::baker {
-
-/// What a hierarchy is built over: a box, whose it is, and a triangle's area. Without a constructor, so that arrays of
-/// many are first touched by the threads that fill them.
-struct BvhItem {
-  glm::vec3 low;
-  std::uint32_t number;
-  glm::vec3 high;
-  float area_m2;
-};
-static_assert(sizeof(BvhItem) == 32);
 
 /// A tree's shape, depth first, a byte a node: the items of a leaf, 0 for an inner node.
 using BvhShape = std::vector<std::uint8_t>;

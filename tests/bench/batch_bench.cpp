@@ -31,12 +31,12 @@ struct Batches {
   std::vector<std::uint32_t> counts;
 };
 
-std::vector<TriangleBox> boxes_of(const PackedPrimitive& primitive, int closed) {
-  std::vector<TriangleBox> boxes;
+std::vector<BvhItem> boxes_of(const PackedPrimitive& primitive, int closed) {
+  std::vector<BvhItem> boxes;
   for (std::size_t t = 0; t < primitive.triangle_count(); ++t) {
     if (closed >= 0 && primitive.closed[t] != (closed == 1)) continue;
-    boxes.push_back(triangle_box(&corner_of(primitive, t, 0).x, &corner_of(primitive, t, 1).x,
-                                 &corner_of(primitive, t, 2).x, static_cast<std::uint32_t>(t)));
+    boxes.push_back(triangle_box(corner_of(primitive, t, 0), corner_of(primitive, t, 1), corner_of(primitive, t, 2),
+                                 static_cast<std::uint32_t>(t)));
   }
   return boxes;
 }

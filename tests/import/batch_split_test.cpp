@@ -20,13 +20,13 @@ float between(std::mt19937& random, double low, double high) {
   return static_cast<float>(low + (high - low) * (static_cast<double>(random()) / 4294967296.0));
 }
 
-std::vector<TriangleBox> random_boxes(std::mt19937& random, std::uint32_t count) {
-  std::vector<TriangleBox> boxes;
+std::vector<BvhItem> random_boxes(std::mt19937& random, std::uint32_t count) {
+  std::vector<BvhItem> boxes;
   for (std::uint32_t i = 0; i < count; ++i) {
     glm::vec3 corners[3];
     const glm::vec3 at(between(random, -9, 9), between(random, 0, 2), between(random, 0, 40));
     for (glm::vec3& corner : corners) corner = at + glm::vec3(between(random, 0, 0.2), between(random, 0, 0.2), 0);
-    boxes.push_back(triangle_box(&corners[0].x, &corners[1].x, &corners[2].x, i));
+    boxes.push_back(triangle_box(corners[0], corners[1], corners[2], i));
   }
   return boxes;
 }
@@ -55,10 +55,10 @@ TEST(BatchSplit, TakesEachTriangleOnceIntoNearlyFullBatches) {
 TEST(BatchSplit, EndsWhateverTheBoxes) {
   std::mt19937 random(2);
   const auto all = [](std::uint32_t count, auto corner) {
-    std::vector<TriangleBox> boxes;
+    std::vector<BvhItem> boxes;
     for (std::uint32_t i = 0; i < count; ++i) {
       const glm::vec3 p = corner(i);
-      boxes.push_back(triangle_box(&p.x, &p.x, &p.x, i));
+      boxes.push_back(triangle_box(p, p, p, i));
     }
     return boxes;
   };
