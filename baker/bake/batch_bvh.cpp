@@ -39,7 +39,7 @@ void make_bvh(std::vector<BvhItem>& items, std::vector<pack::BvhNode>& nodes, st
               PassReport& pass) {
   const BvhShape shape = shape_bvh(items);
   nodes.assign(shape.size(), {});
-  fill_bvh(items, shape, {}, nodes, {});
+  fill_bvh(items, {}, shape, {}, nodes, {});
   refs.clear();
   refs.reserve(items.size());
   for (const BvhItem& item : items) refs.push_back({item.number});

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 
 #include "sah_bins.h"
 
@@ -27,7 +28,7 @@ constexpr std::size_t kMostTried = 5;          // up to here, every way to share
 constexpr std::size_t kBlockNodes = 16384;     // that one thread writes
 constexpr std::size_t kParallelItems = 16384;  // from here on, a node's two sides are built by two threads
 constexpr std::size_t kSamples = 2048;         // of a node with twice as many items or more, to choose its cut from
-constexpr std::size_t kMostLeafItems = 15;     // what four bits hold
+constexpr std::size_t kTreeletItems = 32;      // most of a treelet
 constexpr int kSahDepth = 64;  // below, nodes are cut into halves, so that no input makes a tree of a path
 
 struct Cut {
@@ -62,8 +63,8 @@ Cut find_cut(std::span<const BvhItem> items, const Binning& binning, std::size_t
   return best;
 }
 
-/// How many items, brought to the front, the first child gets; 0 for a leaf of more items than add_few() takes.
-std::size_t cut(std::span<BvhItem> items, const Box& centres, int depth, Box& left, Box& right) {
+/// How many items, brought to the front, the first child gets; 0 for a leaf of up to `most_leaf` items.
+std::size_t cut(std::span<BvhItem> items, std::size_t most_leaf, const Box& centres, int depth, Box& left, Box& right) {
   const Binning binning(centres, std::min(kMostBins, 4 + items.size() / 16));
   Cut best;
   if (depth < kSahDepth) {
@@ -73,13 +74,13 @@ std::size_t cut(std::span<BvhItem> items, const Box& centres, int depth, Box& le
   const std::size_t count = best.axis < 0 ? 0 : partition(items, binning, best.axis, best.bin, left, right);
   if (count > 0 && count < items.size()) return count;
   // No plane parts the centres, or areas are beyond a float.
-  if (items.size() <= kMostLeafItems) return 0;
+  if (items.size() <= most_leaf) return 0;
   left = right = centres;
   return items.size() / 2;
 }
 
 /// The best of all ways to give up to kMostTried items to two children, or to one leaf.
-void add_few(std::span<BvhItem> items, BvhShape& shape) {
+void add_few(std::span<BvhItem> items, std::size_t most_leaf, BvhShape& shape) {
   const unsigned all = (1u << items.size()) - 1;
   std::array<Bin, 1u << kMostTried> sets;  // by the bits of their items
   sets[0] = Bin::empty();
@@ -88,8 +89,9 @@ void add_few(std::span<BvhItem> items, BvhShape& shape) {
     sets[set].add(box_of(items[static_cast<std::size_t>(std::countr_zero(set))]), 1);
   }
   const float area = Box{sets[all].low, sets[all].high}.half_area();
-  float best_cost = sets[all].cost();
-  unsigned best = 0;  // the first child's items; the second child has the last item
+  const bool can_be_leaf = items.size() <= most_leaf;
+  float best_cost = can_be_leaf ? sets[all].cost() : kInfinity;
+  unsigned best = can_be_leaf ? 0 : 1;  // the first child's items; the second child has the last item
   for (unsigned set = 1; set <= all / 2; ++set) {
     const float cost = kTraversalCost * area + sets[set].cost() + sets[all - set].cost();
     if (cost < best_cost) {
@@ -103,32 +105,75 @@ void add_few(std::span<BvhItem> items, BvhShape& shape) {
   std::size_t left = 0, right = static_cast<std::size_t>(std::popcount(best));
   for (std::size_t i = 0; i < items.size(); ++i) sorted[best >> i & 1 ? left++ : right++] = items[i];
   std::copy_n(sorted.begin(), items.size(), items.begin());
-  add_few(items.first(left), shape);
-  add_few(items.subspan(left), shape);
+  add_few(items.first(left), most_leaf, shape);
+  add_few(items.subspan(left), most_leaf, shape);
 }
 
-void add(std::span<BvhItem> items, const Box& centres, int depth, BvhShape& shape) {
-  if (items.size() <= kMostTried) return add_few(items, shape);
+void add(std::span<BvhItem> items, std::size_t most_leaf, const Box& centres, int depth, BvhShape& shape) {
+  if (items.size() <= kMostTried) return add_few(items, most_leaf, shape);
   Box left_centres, right_centres;
-  const std::size_t left = cut(items, centres, depth, left_centres, right_centres);
+  const std::size_t left = cut(items, most_leaf, centres, depth, left_centres, right_centres);
   shape.push_back(static_cast<std::uint8_t>(left == 0 ? items.size() : 0));
   if (left == 0) return;
   if (items.size() < kParallelItems) {
-    add(items.first(left), left_centres, depth + 1, shape);
-    add(items.subspan(left), right_centres, depth + 1, shape);
+    add(items.first(left), most_leaf, left_centres, depth + 1, shape);
+    add(items.subspan(left), most_leaf, right_centres, depth + 1, shape);
     return;
   }
   BvhShape right_shape;
   tbb::task_group group;
-  group.run([&] { add(items.subspan(left), right_centres, depth + 1, right_shape); });
-  add(items.first(left), left_centres, depth + 1, shape);
+  group.run([&] { add(items.subspan(left), most_leaf, right_centres, depth + 1, right_shape); });
+  add(items.first(left), most_leaf, left_centres, depth + 1, shape);
   group.wait();
   shape.insert(shape.end(), right_shape.begin(), right_shape.end());
+}
+
+/// `first_item` is the number of items[0].
+void add_treelets(std::span<BvhItem> items, std::uint32_t first_item, const Box& centres, int depth, Treelets& out) {
+  if (items.size() > kTreeletItems) {
+    Box left_centres, right_centres;
+    const std::size_t left = cut(items, kMostLeafItems, centres, depth, left_centres, right_centres);
+    add_treelets(items.first(left), first_item, left_centres, depth + 1, out);
+    add_treelets(items.subspan(left), first_item + static_cast<std::uint32_t>(left), right_centres, depth + 1, out);
+    return;
+  }
+  BvhItem box = {items[0].low, first_item, items[0].high, 0};
+  for (const BvhItem& item : items) {
+    box.low = glm::min(box.low, item.low);
+    box.high = glm::max(box.high, item.high);
+  }
+  out.boxes.push_back(box);
+  out.item_counts.push_back(static_cast<std::uint32_t>(items.size()));
+  const std::size_t nodes = out.shape.size();
+  add(items, kMostLeafItems, centres, depth, out.shape);
+  out.node_counts.push_back(static_cast<std::uint32_t>(out.shape.size() - nodes));
+}
+
+/// Where a treelet comes from, and where it goes.
+struct TreeletMove {
+  std::uint32_t from_item, items;
+  const std::uint8_t* from_shape;
+  std::uint32_t nodes, to_item = 0, to_node = 0;
+};
+
+std::vector<TreeletMove> list(std::span<const Treelets> parts, std::vector<BvhItem>& boxes) {
+  std::vector<TreeletMove> moves;
+  for (const Treelets& part : parts) {
+    const std::uint8_t* shape = part.shape.data();
+    for (std::size_t i = 0; i < part.boxes.size(); ++i) {
+      moves.push_back({part.boxes[i].number, part.item_counts[i], shape, part.node_counts[i]});
+      shape += part.node_counts[i];
+      boxes.push_back(part.boxes[i]);
+      boxes.back().number = static_cast<std::uint32_t>(moves.size() - 1);
+    }
+  }
+  return moves;
 }
 
 /// Writes the nodes of one tree: in blocks at once, backwards in each, so that children come before their parents.
 struct Filler {
   std::span<const BvhItem> items;
+  std::span<const std::uint32_t> order;  // of items in the leaves; none where they are in order
   const BvhShape& shape;
   BvhPlace place;
   std::span<pack::BvhNode> nodes;
@@ -136,9 +181,11 @@ struct Filler {
 
   /// `item`: the leaf's first, counted in the tree.
   void fill_leaf(std::uint32_t number, std::uint32_t item, std::uint32_t count) const {
-    pack::BvhNode node = {items[item].low, number + 1, items[item].high, (place.first_item + item) * 16 + count};
-    float area_m2 = items[item].area_m2;
-    for (const BvhItem& other : items.subspan(item + 1, count - 1)) {
+    // A treelet's items, and so a leaf's, are side by side in either order.
+    const std::span<const BvhItem> own = items.subspan(order.empty() ? item : order[item], count);
+    pack::BvhNode node = {own[0].low, number + 1, own[0].high, (place.first_item + item) * 16 + count};
+    float area_m2 = own[0].area_m2;
+    for (const BvhItem& other : own.subspan(1)) {
       node.bounds_min = glm::min(node.bounds_min, other.low);
       node.bounds_max = glm::max(node.bounds_max, other.high);
       area_m2 = add_areas(area_m2, other.area_m2);
@@ -186,15 +233,50 @@ double half_area(const pack::BvhNode& node) {
 
 }  // namespace
 
-BvhShape shape_bvh(std::span<BvhItem> items) {
+BvhShape shape_bvh(std::span<BvhItem> items, std::size_t most_leaf) {
   BvhShape shape;
-  if (!items.empty()) add(items, centres_of(items), 0, shape);
+  if (!items.empty()) add(items, most_leaf, centres_of(items), 0, shape);
   return shape;
 }
 
-void fill_bvh(std::span<const BvhItem> items, const BvhShape& shape, const BvhPlace& place,
-              std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas) {
-  const Filler filler{items, shape, place, nodes, areas};
+void shape_treelets(std::span<BvhItem> items, std::uint32_t first_item, Treelets& out) {
+  if (!items.empty()) add_treelets(items, first_item, centres_of(items), 0, out);
+}
+
+BvhShape join_treelets(std::span<const Treelets> parts, std::vector<std::uint32_t>& order) {
+  std::vector<BvhItem> boxes;
+  std::vector<TreeletMove> moves = list(parts, boxes);
+  const BvhShape top = shape_bvh(boxes, 1);
+  BvhShape shape;
+  std::uint32_t node = 0, item = 0, leaf = 0;
+  for (const TreeletMove& move : moves) node += move.nodes, item += move.items;
+  shape.resize(node + top.size() - moves.size());
+  order.resize(item);
+  node = item = 0;
+  for (const std::uint8_t of_top : top) {
+    if (of_top == 0) {
+      ++node;  // an inner node: zero is there
+      continue;
+    }
+    TreeletMove& move = moves[boxes[leaf++].number];
+    move.to_node = node;
+    move.to_item = item;
+    node += move.nodes;
+    item += move.items;
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, moves.size(), 1024), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const TreeletMove& move = moves[i];
+      std::copy_n(move.from_shape, move.nodes, shape.begin() + move.to_node);
+      std::iota(order.begin() + move.to_item, order.begin() + move.to_item + move.items, move.from_item);
+    }
+  });
+  return shape;
+}
+
+void fill_bvh(std::span<const BvhItem> items, std::span<const std::uint32_t> order, const BvhShape& shape,
+              const BvhPlace& place, std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas) {
+  const Filler filler{items, order, shape, place, nodes, areas};
   const std::size_t blocks = (shape.size() + kBlockNodes - 1) / kBlockNodes;
   const auto block_end = [&](std::size_t block) { return std::min((block + 1) * kBlockNodes, shape.size()); };
   std::vector<std::uint32_t> last_items(blocks);

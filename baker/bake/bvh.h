@@ -19,9 +19,26 @@ using BvhShape = std::vector<std::uint8_t>;
 /// Most items of all trees in a section: BvhNode::leaf has 28 bits for an item's number.
 constexpr std::uint64_t kMostBvhItems = (1u << 28) - 1;
 
+/// What four bits of BvhNode::leaf hold.
+constexpr std::size_t kMostLeafItems = 15;
+
 /// Sorts `items` into the order of the leaves and returns the shape of the tree over them; nothing for no items. Uses
 /// all threads where there are many items; the result does not depend on them.
-BvhShape shape_bvh(std::span<BvhItem> items);
+BvhShape shape_bvh(std::span<BvhItem> items, std::size_t most_leaf = kMostLeafItems);
+
+/// The lower parts of a tree, each over up to 32 neighbours.
+struct Treelets {
+  std::vector<BvhItem> boxes;              // `number`: of the treelet's first item
+  std::vector<std::uint32_t> item_counts;  // of each
+  std::vector<std::uint32_t> node_counts;  // of each
+  BvhShape shape;                          // of each, one after another
+};
+
+/// Sorts `items`, some hundred neighbours, into treelets, and appends these. `first_item`: the number of items[0].
+void shape_treelets(std::span<BvhItem> items, std::uint32_t first_item, Treelets& out);
+
+/// The shape of one tree with all treelets; in `order` the numbers of items in the order of its leaves.
+BvhShape join_treelets(std::span<const Treelets> parts, std::vector<std::uint32_t>& order);
 
 /// Where a tree stands in its sections.
 struct BvhPlace {
@@ -29,10 +46,10 @@ struct BvhPlace {
   std::uint32_t first_item = 0;
 };
 
-/// Writes the nodes of a shape over items in its order. `nodes` and `areas` are the whole sections, with zeros where
-/// the tree goes; `areas` may be empty.
-void fill_bvh(std::span<const BvhItem> items, const BvhShape& shape, const BvhPlace& place,
-              std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas);
+/// Writes the nodes of a shape over items in its order, or in `order`, if there is one. `nodes` and `areas` are the
+/// whole sections, with zeros where the tree goes; `areas` may be empty.
+void fill_bvh(std::span<const BvhItem> items, std::span<const std::uint32_t> order, const BvhShape& shape,
+              const BvhPlace& place, std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas);
 
 /// A tree's counts. Its SAH cost: the areas of the nodes plus, of the leaves, areas times items, over the root's area;
 /// 0 where the root has none. It is how many boxes and items a random line through the root's box tests on average.

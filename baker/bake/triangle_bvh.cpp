@@ -26,6 +26,7 @@ constexpr std::size_t kTaskBatches = 64;
 struct Tree {
   BvhPlace place;
   std::span<BvhItem> items;
+  std::vector<std::uint32_t> order;  // of items in the leaves
   BvhShape shape;
 };
 
@@ -49,21 +50,24 @@ BvhItem item_of(const pack::Contents& pack, std::uint32_t triangle) {
           static_cast<float>(std::min<double>(area_m2, std::numeric_limits<float>::max()))};
 }
 
-void fill_items(const pack::Contents& pack, const pack::Mesh& mesh, std::span<BvhItem> items) {
+/// Treelets of each batch, in blocks of batches, and one tree over them all.
+void shape_tree(const pack::Contents& pack, const pack::Mesh& mesh, Tree& tree) {
   const std::span batches = std::span(pack.batches).subspan(mesh.first_batch, mesh.batch_count);
-  std::vector<std::uint32_t> first_items;
+  std::vector<std::uint32_t> first_items(batches.size());
   std::uint32_t next = 0;
-  for (const pack::Batch& batch : batches) {
-    first_items.push_back(next);
-    next += triangle_count(batch);
+  for (std::size_t b = 0; b < batches.size(); ++b) {
+    first_items[b] = next;
+    next += triangle_count(batches[b]);
   }
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, batches.size(), kTaskBatches), [&](const auto& range) {
-    for (std::size_t b = range.begin(); b < range.end(); ++b) {
-      for (std::uint32_t t = 0; t < triangle_count(batches[b]); ++t) {
-        items[first_items[b] + t] = item_of(pack, batches[b].first_index / 3 + t);
-      }
+  std::vector<Treelets> parts((batches.size() + kTaskBatches - 1) / kTaskBatches);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    for (std::size_t b = part * kTaskBatches; b < std::min(batches.size(), (part + 1) * kTaskBatches); ++b) {
+      const std::span items = tree.items.subspan(first_items[b], triangle_count(batches[b]));
+      for (std::uint32_t t = 0; t < items.size(); ++t) items[t] = item_of(pack, batches[b].first_index / 3 + t);
+      shape_treelets(items, first_items[b], parts[part]);
     }
   });
+  tree.shape = join_treelets(parts, tree.order);
 }
 
 /// Where each mesh's items go; returns their count.
@@ -100,10 +104,10 @@ void make_room(std::uint32_t nodes, std::uint32_t items, pack::Contents& pack) {
 }
 
 void fill_tree(const Tree& tree, pack::Contents& pack) {
-  fill_bvh(tree.items, tree.shape, tree.place, pack.triangle_bvh, pack.triangle_bvh_areas);
+  fill_bvh(tree.items, tree.order, tree.shape, tree.place, pack.triangle_bvh, pack.triangle_bvh_areas);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.items.size(), 16384), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      pack.triangle_bvh_items[tree.place.first_item + i].triangle = tree.items[i].number;
+      pack.triangle_bvh_items[tree.place.first_item + i].triangle = tree.items[tree.order[i]].number;
     }
   });
 }
@@ -138,8 +142,7 @@ void make_triangle_bvh(PassReport& pass, pack::Contents& pack) {
   tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t m) {
     Tree& tree = trees[m];
     tree.items = {items.get() + tree.place.first_item, triangle_count(pack, pack.meshes[m])};
-    fill_items(pack, pack.meshes[m], tree.items);
-    tree.shape = shape_bvh(tree.items);
+    shape_tree(pack, pack.meshes[m], tree);
   });
   make_room(place_nodes(trees, pack.meshes), item_count, pack);
   tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t m) { fill_tree(trees[m], pack); });

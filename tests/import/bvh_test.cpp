@@ -26,7 +26,7 @@ Tree build(std::vector<BvhItem> items) {
   const BvhShape shape = shape_bvh(tree.items);
   tree.nodes.resize(shape.size());
   tree.areas.resize(shape.size());
-  fill_bvh(tree.items, shape, {}, tree.nodes, tree.areas);
+  fill_bvh(tree.items, {}, shape, {}, tree.nodes, tree.areas);
   return tree;
 }
 
@@ -172,6 +172,46 @@ TEST(Bvh, TakesWhatIsHugeTinyOrFlat) {
   for (BvhItem& each : flat) each.low.y = each.high.y = 7;
   expect_tree_of(build(ends), ends.size());
   expect_tree_of(build(flat), flat.size());
+}
+
+/// Groups of 90 neighbours, treelets of each in `parts` blocks, one tree.
+Tree build_of_treelets(std::vector<BvhItem> items, std::size_t parts) {
+  constexpr std::size_t kGroup = 90;
+  shape_bvh(items);  // neighbours side by side
+  std::vector<Treelets> treelets(parts);
+  for (std::size_t first = 0; first < items.size(); first += kGroup) {
+    shape_treelets(std::span(items).subspan(first, std::min(kGroup, items.size() - first)),
+                   static_cast<std::uint32_t>(first), treelets[first * parts / items.size()]);
+  }
+  std::vector<std::uint32_t> order;
+  const BvhShape shape = join_treelets(treelets, order);
+  Tree tree;
+  tree.nodes.resize(shape.size());
+  tree.areas.resize(shape.size());
+  fill_bvh(items, order, shape, {}, tree.nodes, tree.areas);
+  for (const std::uint32_t number : order) tree.items.push_back(items[number]);
+  return tree;
+}
+
+TEST(Bvh, OfTreeletsCostsLittleMoreThanOfItems) {
+  for (const std::uint32_t count : {1u, 32u, 33u, 90u, 1000u, 100000u}) {
+    SCOPED_TRACE(count);
+    const std::vector<BvhItem> items = random_items(count, 1, 5);
+    const Tree tree = build_of_treelets(items, 3);
+    expect_tree_of(tree, count);
+    EXPECT_LT(bvh_stats(tree.nodes).sah_cost, 1.1 * bvh_stats(build(items).nodes).sah_cost);
+  }
+  EXPECT_TRUE(build_of_treelets({}, 2).nodes.empty());
+}
+
+TEST(Bvh, OfTreeletsTakesWhatCannotBeCut) {
+  std::vector<BvhItem> same, ends;
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    same.push_back(item(i, {1, 2, 3}, {2, 3, 4}));
+    ends.push_back(item(i, glm::vec3(i % 2 ? -kMost : kMost), glm::vec3(kMost)));
+  }
+  expect_tree_of(build_of_treelets(same, 1), same.size());
+  expect_tree_of(build_of_treelets(ends, 1), ends.size());
 }
 
 TEST(Bvh, IsTheSameOnAnyNumberOfThreads) {
