@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <vector>
 
 namespace chandelier::pack {
@@ -30,7 +32,18 @@ std::string node_fault(const View& view) {
   return {};
 }
 
+/// The keys whose time is not above that of the key before, in order. Channels may share keys, so each key is looked at
+/// once for all of them.
+std::vector<std::size_t> keys_that_do_not_ascend(std::span<const KeyTime> times) {
+  std::vector<std::size_t> keys;
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    if (!(times[k].time_s > times[k - 1].time_s)) keys.push_back(k);
+  }
+  return keys;
+}
+
 std::string channel_fault(const View& view) {
+  const std::vector<std::size_t> breaks = keys_that_do_not_ascend(view.animation_times);
   for (std::size_t i = 0; i < view.animation_channels.size(); ++i) {
     const AnimationChannel& channel = view.animation_channels[i];
     const std::uint64_t components = channel.path == AnimationPath::rotation ? 4 : 3;
@@ -40,12 +53,10 @@ std::string channel_fault(const View& view) {
       return at("animation_channels", i) + ".value_count: " + std::to_string(channel.value_count) +
              " where its keys have " + std::to_string(expected);
     }
-    for (std::size_t k = 1; k < channel.key_count; ++k) {
-      if (view.animation_times[channel.first_key + k].time_s > view.animation_times[channel.first_key + k - 1].time_s) {
-        continue;
-      }
-      return at("animation_times", channel.first_key + k) + ".time_s: does not ascend in " +
-             at("animation_channels", i);
+    // A break at the channel's first key is between two channels.
+    const auto found = std::upper_bound(breaks.begin(), breaks.end(), std::size_t{channel.first_key});
+    if (found != breaks.end() && *found < std::size_t{channel.first_key} + channel.key_count) {
+      return at("animation_times", *found) + ".time_s: does not ascend in " + at("animation_channels", i);
     }
   }
   return {};
@@ -66,15 +77,38 @@ std::string duration_fault(const View& view) {
   return {};
 }
 
-/// The number of the joint after the last that a mesh asks for.
-std::uint32_t joints_asked(const View& view, const Mesh& mesh) {
+/// The number of the joint after the last that a vertex asks for.
+std::uint32_t joints_asked(const SkinVertex& vertex) {
   std::uint32_t end = 0;
-  for (std::size_t v = 0; v < mesh.skin_vertex_count; ++v) {
-    for (const std::uint32_t pair : view.skin_vertices[mesh.first_skin_vertex + v].joints) {
-      end = std::max(end, 1 + std::max(pair & 0xFFFFu, pair >> 16));
-    }
-  }
+  for (const std::uint32_t pair : vertex.joints) end = std::max(end, 1 + std::max(pair & 0xFFFFu, pair >> 16));
   return end;
+}
+
+/// The same of each mesh. Meshes may share skin vertices, so each vertex is looked at once for all of them: meshes are
+/// taken by where they end, and of the vertices before only those wait that ask for more than all after them.
+std::vector<std::uint32_t> joints_asked_by_meshes(const View& view) {
+  const auto end_of = [](const Mesh& mesh) { return std::size_t{mesh.first_skin_vertex} + mesh.skin_vertex_count; };
+  std::vector<std::uint32_t> order(view.meshes.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return end_of(view.meshes[i]); });
+  struct Waiting {
+    std::size_t vertex;
+    std::uint32_t asked;
+  };
+  std::vector<Waiting> waiting;  // vertices ascend, what they ask for descends
+  std::vector<std::uint32_t> asked(view.meshes.size());
+  std::size_t next = 0;
+  for (const std::uint32_t i : order) {
+    const Mesh& mesh = view.meshes[i];
+    if (mesh.skin_vertex_count == 0) continue;
+    for (; next < end_of(mesh); ++next) {
+      const std::uint32_t most = joints_asked(view.skin_vertices[next]);
+      while (!waiting.empty() && waiting.back().asked <= most) waiting.pop_back();
+      waiting.push_back({next, most});
+    }
+    asked[i] = std::ranges::lower_bound(waiting, std::size_t{mesh.first_skin_vertex}, {}, &Waiting::vertex)->asked;
+  }
+  return asked;
 }
 
 std::string skin_vertex_fault(const View& view) {
@@ -86,17 +120,15 @@ std::string skin_vertex_fault(const View& view) {
   return {};
 }
 
-/// Every mesh's joints are looked at once, however many instances and skins it has.
 std::string skin_fault(const View& view) {
-  std::vector<std::uint32_t> asked(view.meshes.size());
-  for (std::size_t i = 0; i < asked.size(); ++i) {
+  for (std::size_t i = 0; i < view.meshes.size(); ++i) {
     const Mesh& mesh = view.meshes[i];
     if (mesh.skin_vertex_count != 0 && mesh.skin_vertex_count != mesh.vertex_count) {
       return at("meshes", i) + ".skin_vertex_count: " + std::to_string(mesh.skin_vertex_count) +
              " is neither 0 nor its " + std::to_string(mesh.vertex_count) + " vertices";
     }
-    asked[i] = joints_asked(view, mesh);
   }
+  const std::vector<std::uint32_t> asked = joints_asked_by_meshes(view);
   for (std::size_t i = 0; i < view.instances.size(); ++i) {
     const Instance& instance = view.instances[i];
     if (instance.dynamic == 0 && (instance.skin != none || instance.node != none)) {

@@ -2,7 +2,10 @@
 // Rules between the fields of what moves: each breach is named.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <random>
+#include <string>
 
 #include "pack_checks_animation.h"
 #include "pack_sample.h"
@@ -109,6 +112,85 @@ INSTANTIATE_TEST_SUITE_P(Each, PackAnimationRules, testing::ValuesIn(breaches),
 
 TEST(PackAnimation, IsRightAsItIs) {
   EXPECT_EQ(animation_fault(view_of(moving_sample())), "");
+}
+
+/// Between them 10^12 keys, which would take many minutes to look at one by one.
+TEST(PackAnimation, ManyChannelsMayShareManyKeys) {
+  constexpr std::uint32_t count = 1000000;
+  Contents c = moving_sample();
+  c.animations = {{.first_channel = 0, .channel_count = count, .duration_s = static_cast<float>(2 * count)}};
+  c.animation_times.clear();
+  for (std::uint32_t k = 0; k < count; ++k) c.animation_times.push_back({static_cast<float>(k)});
+  c.animation_values.assign(4 * std::size_t{count}, {0.25f});
+  AnimationChannel channel = c.animation_channels[0];
+  channel.key_count = count;
+  channel.value_count = 4 * count;
+  c.animation_channels.assign(count, channel);
+  EXPECT_EQ(animation_fault(view_of(c)), "");
+  for (AnimationChannel& each : c.animation_channels)
+    each = {.path = channel.path, .key_count = count - 1, .value_count = 4 * count - 4};
+  c.animation_channels.back() = channel;
+  c.animation_times.back().time_s = c.animation_times[count - 2].time_s;
+  EXPECT_EQ(animation_fault(view_of(c)),
+            "animation_times[999999].time_s: does not ascend in animation_channels[999999]");
+}
+
+TEST(PackAnimation, ManyMeshesMayShareManySkinVertices) {
+  constexpr std::uint32_t count = 1000000;
+  Contents c = moving_sample();
+  c.skin_vertices.resize(count, c.skin_vertices[0]);
+  Mesh mesh = c.meshes[0];
+  mesh.first_skin_vertex = 0;
+  mesh.vertex_count = mesh.skin_vertex_count = count;
+  c.meshes.assign(count, mesh);
+  EXPECT_EQ(animation_fault(view_of(c)), "");
+}
+
+TEST(PackAnimation, AChannelMayBeginWhereAnotherEnded) {
+  Contents c = moving_sample();
+  c.animation_times = {{0}, {2}, {1}, {2}, {2}};
+  c.animation_channels[0].first_key = 2;
+  c.animation_channels[0].key_count = 2;
+  c.animation_channels[0].value_count = 8;
+  c.animation_channels[1].first_key = 0;
+  EXPECT_EQ(animation_fault(view_of(c)), "");
+}
+
+/// Meshes with any runs of skin vertices, against a look at each vertex of each: a skin with one joint less than a mesh
+/// asks for is refused, and one with as many is not.
+TEST(PackAnimation, MeshesAskForTheJointsOfTheirOwnVertices) {
+  std::mt19937 random(7);
+  const auto below = [&](std::uint32_t end) { return static_cast<std::uint32_t>(random() % end); };
+  for (int round = 0; round < 200; ++round) {
+    Contents c = moving_sample();
+    c.skin_vertices.resize(1 + below(40), c.skin_vertices[0]);
+    for (SkinVertex& vertex : c.skin_vertices) vertex.joints = {below(9) | below(9) << 16, below(9) | below(9) << 16};
+    const auto vertices = static_cast<std::uint32_t>(c.skin_vertices.size());
+    Instance instance = c.instances[0];
+    c.meshes.resize(1 + below(20), c.meshes[0]);
+    c.instances.clear();
+    c.skins.clear();
+    for (std::uint32_t i = 0; i < c.meshes.size(); ++i) {
+      const std::uint32_t first = below(vertices), size = 1 + below(vertices - first);
+      c.meshes[i].first_skin_vertex = first;
+      c.meshes[i].vertex_count = c.meshes[i].skin_vertex_count = size;
+      std::uint32_t asked = 0;
+      for (std::uint32_t v = first; v < first + size; ++v) {
+        for (const std::uint32_t pair : c.skin_vertices[v].joints) {
+          asked = std::max({asked, (pair & 0xFFFF) + 1, (pair >> 16) + 1});
+        }
+      }
+      instance.mesh = instance.skin = i;
+      c.instances.push_back(instance);
+      c.skins.push_back({.first_joint = 0, .joint_count = asked});
+    }
+    EXPECT_EQ(animation_fault(view_of(c)), "");
+    const std::uint32_t less = below(static_cast<std::uint32_t>(c.skins.size()));
+    const std::uint32_t asked = c.skins[less].joint_count--;
+    const std::string i = std::to_string(less);
+    EXPECT_EQ(animation_fault(view_of(c)), "instances[" + i + "].skin: has " + std::to_string(asked - 1) +
+                                               " joints where meshes[" + i + "] asks for " + std::to_string(asked));
+  }
 }
 
 }  // namespace
