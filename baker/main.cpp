@@ -108,13 +108,19 @@ pack::Contents make_pack(const baker::Options& options, const baker::Progress& p
       "scene", [&] { return baker::bake(std::move(scene), options.bake, progress, outcome.report, warnings, &cache); });
 }
 
-/// The depfile comes first: with the new pack and the old depfile, a file that is newly read could change unnoticed.
+/// The check runs while the disk takes what was written. The depfile comes before the pack is in its place: with the
+/// new pack and the old depfile, a file that is newly read could change unnoticed.
 void write_pack(const baker::Options& options, const pack::Contents& pack, Outcome& outcome) {
+  std::optional<pack::Writer> writer;
+  outcome.report.run("write", [&](baker::PassReport&) {
+    writer.emplace(options.output, pack, options.compress ? pack::Compression::smallest : pack::Compression::off);
+  });
+  with_memory_for("scene", [&] { baker::check(pack, outcome.report); });
   if (!options.depfile.empty()) {
     pack::write_text(options.depfile, baker::depfile_text(options.output, outcome.files_read));
   }
-  outcome.report.run("write", [&](baker::PassReport& pass) {
-    pack::write(options.output, pack, options.compress ? pack::Compression::smallest : pack::Compression::off);
+  outcome.report.run("sync", [&](baker::PassReport& pass) {
+    writer->commit();
     pass.bytes = outcome.pack_bytes = std::filesystem::file_size(options.output);
   });
   outcome.triangles = pack.bake_info.unique_triangles;

@@ -46,12 +46,14 @@ std::uint64_t align_up(std::uint64_t offset) {
   return (offset + section_alignment - 1) / section_alignment * section_alignment;
 }
 
-// ---- Writing
-
-void write_zeros(TemporaryFile& file, std::uint64_t size) {
-  static constexpr std::byte zeros[section_alignment] = {};
-  file.write(zeros, size);
+/// Calls `body` for each section, in threads where the file is big enough for that.
+template <typename Body>
+void for_each_section(std::uint64_t file_bytes, std::size_t count, const Body& body) {
+  if (file_bytes >= few_bytes) return parallel_for(count, body);
+  for (std::size_t i = 0; i < count; ++i) body(i);
 }
+
+// ---- Writing
 
 struct FileLayout {
   FileHeader header;
@@ -59,7 +61,7 @@ struct FileLayout {
   std::vector<std::span<const std::byte>> sections;
 };
 
-/// `encoded` has one entry for each of section_infos, or is empty.
+/// Where all goes, without checksums. `encoded` has one entry for each of section_infos, or is empty.
 FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
   FileLayout layout;
   for (std::size_t i = 0; i < section_infos.size(); ++i) {
@@ -74,7 +76,6 @@ FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
     entry.size_bytes = stored.size();
     entry.stride_bytes = section_infos[i].stride_bytes;
     entry.count = records.size() / entry.stride_bytes;
-    entry.checksum = XXH3_64bits(stored.data(), stored.size());
   }
   std::uint64_t end = sizeof(FileHeader) + layout.table.size() * sizeof(SectionEntry);
   for (SectionEntry& entry : layout.table) {
@@ -86,19 +87,24 @@ FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
   layout.header.section_count = static_cast<std::uint32_t>(layout.table.size());
   layout.header.schema_hash = schema_hash;
   layout.header.file_bytes = end;
-  layout.header.table_checksum = XXH3_64bits(layout.table.data(), layout.table.size() * sizeof(SectionEntry));
   return layout;
 }
 
-void write_layout(TemporaryFile& file, const FileLayout& layout) {
-  file.write(&layout.header, sizeof(FileHeader));
-  file.write(layout.table.data(), layout.table.size() * sizeof(SectionEntry));
-  std::uint64_t end = sizeof(FileHeader) + layout.table.size() * sizeof(SectionEntry);
-  for (std::size_t i = 0; i < layout.table.size(); ++i) {
-    write_zeros(file, layout.table[i].offset_bytes - end);
-    file.write(layout.sections[i].data(), layout.sections[i].size());
-    end = layout.table[i].offset_bytes + layout.table[i].size_bytes;
-  }
+/// The sections first, some at a time, then what holds their checksums.
+void write_all(TemporaryFile& file, const View& view, Compression compression) {
+  std::vector<Encoded> encoded;
+  if (compression == Compression::smallest) encoded = encode_sections(view);
+  FileLayout layout = lay_out(view, encoded);
+  const auto write_one = [&](std::size_t i) {
+    const std::span<const std::byte> bytes = layout.sections[i];
+    layout.table[i].checksum = XXH3_64bits(bytes.data(), bytes.size());
+    file.write(layout.table[i].offset_bytes, bytes.data(), bytes.size());
+  };
+  for_each_section(layout.header.file_bytes, layout.table.size(), write_one);
+  const std::size_t table_bytes = layout.table.size() * sizeof(SectionEntry);
+  layout.header.table_checksum = XXH3_64bits(layout.table.data(), table_bytes);
+  file.write(0, &layout.header, sizeof(FileHeader));
+  file.write(sizeof(FileHeader), layout.table.data(), table_bytes);
 }
 
 // ---- Reading
@@ -220,11 +226,7 @@ std::string checksum_fault(std::span<const std::byte> file, const std::vector<Fo
     const std::uint64_t checksum = XXH3_64bits(file.data() + entry.offset_bytes, entry.size_bytes);
     if (entry.checksum != checksum) faults[i] = in_section(sections[i], wrong("checksum", entry.checksum, checksum));
   };
-  if (file.size() < few_bytes) {
-    for (std::size_t i = 0; i < sections.size(); ++i) check_one(i);
-  } else {
-    parallel_for(sections.size(), check_one);
-  }
+  for_each_section(file.size(), sections.size(), check_one);
   const auto first = std::ranges::find_if(faults, [](const std::string& line) { return !line.empty(); });
   return first == faults.end() ? std::string() : *first;
 }
@@ -269,14 +271,25 @@ std::string place_records(std::span<const std::byte> file, const std::vector<Fou
 
 void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression) {
   TemporaryFile file(path);
-  std::vector<Encoded> encoded;
-  if (compression == Compression::smallest) encoded = encode_sections(view);
-  write_layout(file, lay_out(view, encoded));
+  write_all(file, view, compression);
   file.commit(sync);
 }
 
 void write(const std::filesystem::path& path, const Contents& contents, Compression compression) {
   write(path, view_of(contents), Sync::yes, compression);
+}
+
+Writer::Writer(const std::filesystem::path& path, const Contents& contents, Compression compression) : file_(path) {
+  write_all(file_, view_of(contents), compression);
+  try {
+    syncing_ = std::async(std::launch::async, [this] { file_.sync(); });
+  } catch (const std::system_error&) {  // no thread to be had: commit() syncs
+  }
+}
+
+void Writer::commit() {
+  if (syncing_.valid()) syncing_.get();
+  file_.commit(Sync::yes);
 }
 
 Mapping::~Mapping() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <future>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -27,6 +28,20 @@ enum class Compression { off, smallest };
 /// beforehand whether the pack will open. Throws Error.
 void write(const std::filesystem::path& path, const Contents& contents, Compression compression = Compression::off);
 void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression = Compression::off);
+
+/// write() in two steps, between which the disk works on its own.
+class Writer {
+ public:
+  /// Writes the temporary file and begins to sync it. `contents` are not needed any more. Throws Error.
+  Writer(const std::filesystem::path& path, const Contents& contents, Compression compression);
+  Writer(const Writer&) = delete;
+  /// Waits for the disk and puts the file in its place; without it nothing is left behind. Throws Error.
+  void commit();
+
+ private:
+  TemporaryFile file_;
+  std::future<void> syncing_;  // waits before file_ goes
+};
 
 /// Memory from mmap().
 class Mapping {

@@ -78,19 +78,26 @@ TemporaryFile::~TemporaryFile() {
   close(descriptor_);
 }
 
-void TemporaryFile::write(const void* data, std::size_t size) {
+void TemporaryFile::write(std::uint64_t offset, const void* data, std::size_t size) {
   const char* at = static_cast<const char*>(data);
+  auto place = static_cast<off_t>(offset);
   while (size > 0) {
-    const ssize_t written = ::write(descriptor_, at, size);
+    const ssize_t written = pwrite(descriptor_, at, size, place);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail_system(path_, "cannot write", errno);
     at += written;
+    place += written;
     size -= static_cast<std::size_t>(written);
   }
 }
 
+void TemporaryFile::sync() {
+  if (fsync(descriptor_) != 0) fail_system(path_, "cannot sync", errno);
+  synced_ = true;
+}
+
 void TemporaryFile::commit(Sync sync) {
-  if (sync == Sync::yes && fsync(descriptor_) != 0) fail_system(path_, "cannot sync", errno);
+  if (sync == Sync::yes && !synced_) this->sync();
   if (rename(temporary_.c_str(), path_.c_str()) != 0) fail_system(path_, "cannot replace", errno);
   if (close(std::exchange(descriptor_, -1)) != 0) fail_system(path_, "cannot close", errno);
   if (sync == Sync::yes) sync_folder(folder_of(path_));
@@ -98,7 +105,7 @@ void TemporaryFile::commit(Sync sync) {
 
 void write_text(const std::filesystem::path& path, std::string_view text) {
   TemporaryFile file(path);
-  file.write(text.data(), text.size());
+  file.write(0, text.data(), text.size());
   file.commit(Sync::yes);
 }
 

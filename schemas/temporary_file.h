@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
@@ -19,7 +20,11 @@ class TemporaryFile {
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  void write(const void* data, std::size_t size);
+  /// Any thread may call it. What no call fills up to the file's end is zero.
+  void write(std::uint64_t offset, const void* data, std::size_t size);
+
+  /// Waits until all that was written is on the disk. Any thread may call it, after the last write().
+  void sync();
 
   /// Puts the file in its place. Without `sync`, a power failure soon after may leave an empty or damaged file there.
   void commit(Sync sync);
@@ -29,6 +34,7 @@ class TemporaryFile {
 
   std::filesystem::path path_, temporary_;
   int descriptor_ = -1;
+  bool synced_ = false;
 };
 
 /// Writes all of `text`, as above.

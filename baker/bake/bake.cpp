@@ -19,6 +19,7 @@
 #include "strings.h"
 #include "textures.h"
 #include "triangle_bvh.h"
+#include "threads.h"
 
 namespace chandelier::baker {
 namespace {
@@ -118,11 +119,14 @@ pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress&
   bake_lights(scene, settings, report, warnings, strings, pack);
   make_cameras(scene, strings, pack);
   describe(scene, settings, strings, pack);
+  return pack;
+}
+
+void check(const pack::Contents& pack, Report& report) {
   report.run("check", [&](PassReport&) {
-    const std::string fault = pack::check(pack::view_of(pack));
+    const std::string fault = pack::check(pack::view_of(pack), most_threads());
     if (!fault.empty()) fail("scene", "cannot be stored in a pack: " + fault);
   });
-  return pack;
 }
 
 }  // namespace chandelier::baker

@@ -24,9 +24,12 @@ struct BakeSettings {
   float smooth_angle_deg = 0;           // missing normals: neighbours within this are smoothed; 0: all flat
 };
 
-/// Runs all passes, and notes each in `report`; takes from `cache`, where there is one, what it keeps. Same scene and settings, same contents, whatever the number of threads.
-/// Throws Error.
+/// Runs all passes, and notes each in `report`; takes from `cache`, where there is one, what it keeps. Same scene and
+/// settings, same contents, whatever the number of threads. They have yet to be checked. Throws Error.
 pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
                     Warnings& warnings, Cache* cache = nullptr);
+
+/// Throws Error unless a pack with these contents will open.
+void check(const pack::Contents& pack, Report& report);
 
 }  // namespace chandelier::baker

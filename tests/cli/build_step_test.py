@@ -30,7 +30,7 @@ class Report(BakeTool):
         self.assertEqual(report["settings"]["range-threshold"], "0.05")
         self.assertGreater(report["peak_memory_bytes"], 1_000_000)
         names = [each["name"] for each in report["passes"]]
-        self.assertEqual((names[0], names[-1]), ("import", "write"))
+        self.assertEqual((names[0], names[-1]), ("import", "sync"))
         self.assertLessEqual(sum(each["ms"] for each in report["passes"] if "geometry" not in each["name"]),
                              report["seconds"] * 1000 + 1)
         version = re.search(r"project\(Chandelier VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)

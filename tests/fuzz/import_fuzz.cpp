@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a glTF: baked, or refused with baker::Error. What is baked passes the pack's own checks inside bake().
+// Any bytes as a glTF: baked, or refused with baker::Error. What is baked passes the pack's own checks.
 #include "bake/bake.h"
 #include "fuzz_file.h"
 #include "import/import.h"
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     baker::Warnings warnings;
     baker::Report report;
     baker::import_gltf(file.path(), scene, warnings);
-    baker::bake(std::move(scene), {}, baker::Progress(false), report, warnings);
+    baker::check(baker::bake(std::move(scene), {}, baker::Progress(false), report, warnings), report);
   } catch (const baker::Error&) {
   }
   return 0;

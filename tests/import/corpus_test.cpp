@@ -40,7 +40,7 @@ Verdict bake_file(const std::filesystem::path& path) {
     Scene scene;
     import_gltf(path, scene, warnings);
     Report report;
-    bake(std::move(scene), {}, Progress(false), report, warnings);
+    check(bake(std::move(scene), {}, Progress(false), report, warnings), report);
   } catch (const Error& error) {  // another exception fails the test
     out.error = error.what();
   }

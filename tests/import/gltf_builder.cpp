@@ -84,7 +84,9 @@ pack::Contents GltfBuilder::bake(const BakeSettings& settings) const {
 pack::Contents bake_scene(Scene&& scene, const BakeSettings& settings) {
   Report report;
   Warnings warnings;
-  return baker::bake(std::move(scene), settings, Progress(false), report, warnings);
+  pack::Contents pack = baker::bake(std::move(scene), settings, Progress(false), report, warnings);
+  check(pack, report);
+  return pack;
 }
 
 GltfBuilder one_triangle() {
