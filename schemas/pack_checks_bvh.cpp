@@ -7,31 +7,19 @@
 #include "pack_checks_bvh.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "pack_checks_text.h"
+
 namespace chandelier::pack {
 namespace {
 
-/// How far a node's area may be from the sum of its children's, as a part of it: writers add in different orders.
-constexpr double area_tolerance = 1e-4;
-
-std::string text(std::uint64_t value) {
-  return std::to_string(value);
-}
-
-std::string decimal(double value) {
-  char buffer[32];
-  return std::string(buffer, std::to_chars(buffer, buffer + sizeof(buffer), static_cast<float>(value)).ptr);
-}
-
-std::string place(const char* section, std::uint64_t number) {
-  return std::string(section) + "[" + text(number) + "]";
-}
+/// How far a node's area may be from the sum of its children's, as a part of it: writers may round each to 11 bits.
+constexpr double area_tolerance = 1e-3;
 
 bool is_ordered(const glm::vec3& low, const glm::vec3& high) {
   return low.x <= high.x && low.y <= high.y && low.z <= high.z;
@@ -92,16 +80,15 @@ std::string children_fault(const Trees& trees, std::uint32_t number, std::uint32
 /// Of the tree whose nodes are `first` to `end`, at least one. Its leaves' items are the next ones.
 std::string tree_fault(Trees& trees, std::uint32_t first, std::uint32_t end) {
   if (trees.nodes[first].skip != end) {
-    return place(trees.name, first) + ".skip: " + text(trees.nodes[first].skip) + " where its tree ends at " +
-           text(end);
+    return at(trees.name, first) + ".skip: " + text(trees.nodes[first].skip) + " where its tree ends at " + text(end);
   }
   for (std::uint32_t i = first; i < end; ++i) {
     const BvhNode& node = trees.nodes[i];
     if (!is_ordered(node.bounds_min, node.bounds_max)) {
-      return place(trees.name, i) + ".bounds_min: above bounds_max";
+      return at(trees.name, i) + ".bounds_min: above bounds_max";
     }
     if (std::string line = node.leaf == none ? children_fault(trees, i, end) : leaf_fault(trees, i); !line.empty()) {
-      return place(trees.name, i) + line;
+      return at(trees.name, i) + line;
     }
   }
   return {};
@@ -126,7 +113,7 @@ std::string items_fault(const char* name, std::span<const Ref> items, std::uint3
   for (std::size_t i = 0; i < items.size(); ++i) {
     const std::uint32_t n = items[i].*number;
     if (!is_wanted[n]) {
-      return place(name, i) + "." + field + ": " + text(n) + " is there already, or is not one of the " + wanted;
+      return at(name, i) + "." + field + ": " + text(n) + " is there already, or is not one of the " + wanted;
     }
     is_wanted[n] = false;
   }
@@ -142,7 +129,7 @@ std::string batch_boxes_fault(const View& view) {
       const std::uint32_t number = view.batch_bvh_items[item].batch_instance;
       const BatchInstance& draw = view.batch_instances[number];
       if (!holds(node, draw.bounds_min_ws, draw.bounds_max_ws)) {
-        return place("batch_bvh", i) + ": its box does not hold that of batch instance " + text(number);
+        return at("batch_bvh", i) + ": its box does not hold that of batch instance " + text(number);
       }
     }
   }
@@ -197,12 +184,12 @@ std::string triangles_fault(const View& view, std::size_t m, std::uint64_t first
     std::fill(begin, begin + batch.index_count / 3, true);
   }
   if (triangles != end - first) {
-    return place("meshes", m) + ": its triangle BVH has " + text(end - first) + " items, not one for each triangle";
+    return at("meshes", m) + ": its triangle BVH has " + text(end - first) + " items, not one for each triangle";
   }
   for (std::uint64_t i = first; i < end; ++i) {
     const std::uint32_t triangle = view.triangle_bvh_items[i].triangle;
     if (triangle >= is_open.size() || !is_open[triangle]) {
-      return place("triangle_bvh_items", i) + ".triangle: " + text(triangle) +
+      return at("triangle_bvh_items", i) + ".triangle: " + text(triangle) +
              " is there already, or is not in a batch of its mesh";
     }
     is_open[triangle] = false;
@@ -218,8 +205,8 @@ std::string areas_fault(const View& view) {
                        double{view.triangle_bvh_areas[view.triangle_bvh[i + 1].skip].area_m2};
     const double most = std::min(sum, double{std::numeric_limits<float>::max()});
     if (std::abs(area - most) > area_tolerance * most) {
-      return place("triangle_bvh_areas", i) + ".area_m2: " + decimal(area) + " where its children have " +
-             decimal(most);
+      return at("triangle_bvh_areas", i) + ".area_m2: " + text(static_cast<float>(area)) + " where its children have " +
+             text(static_cast<float>(most));
     }
   }
   return {};
@@ -234,7 +221,7 @@ std::string triangle_bvh_fault(const View& view) {
     const std::uint64_t first_item = trees.next_item;
     if (mesh.node_count > 0) {
       if (mesh.first_node != next_node) {
-        return place("meshes", m) + ".first_node: " + text(mesh.first_node) + " where the trees before it end with " +
+        return at("meshes", m) + ".first_node: " + text(mesh.first_node) + " where the trees before it end with " +
                text(next_node);
       }
       next_node += mesh.node_count;

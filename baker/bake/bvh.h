@@ -47,7 +47,7 @@ struct BvhPlace {
 };
 
 /// Writes the nodes of a shape over items in its order, or in `order`, if there is one. `nodes` and `areas` are the
-/// whole sections, with zeros where the tree goes; `areas` may be empty.
+/// whole sections, with zeros where the tree goes; `areas`, rounded to 11 bits, may be empty.
 void fill_bvh(std::span<const BvhItem> items, std::span<const std::uint32_t> order, const BvhShape& shape,
               const BvhPlace& place, std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas);
 
