@@ -11,6 +11,9 @@ namespace {
 void check_buffer(const Json&, const Object& buffer) {
   buffer.integer("byteLength", 0, kMostBytes, Need::required);
   buffer.text("uri");
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    if (const auto extension = buffer.extension(name)) extension->boolean("fallback");
+  }
 }
 
 void check_buffer_view(const Json& root, const Object& view) {

@@ -25,6 +25,12 @@ std::string text_or(const Json& object, const char* key, const char* otherwise) 
   return it != object.end() && it->is_string() ? it->get<std::string>() : otherwise;
 }
 
+/// A number under a key, or another where there is none.
+double number_or(const Json& object, const char* key, double otherwise) {
+  const auto it = object.find(key);
+  return it != object.end() && it->is_number() ? it->get<double>() : otherwise;
+}
+
 void lint_buffers(const Lint& lint) {
   for_each(lint, "buffers", [&](const Json& buffer, std::size_t i) {
     if (whole(buffer, "byteLength", 1) == 0) lint.say("buffers", i, "it is empty");
@@ -72,9 +78,9 @@ void lint_cameras(const Lint& lint) {
   for_each(lint, "cameras", [&](const Json& camera, std::size_t i) {
     if (camera.contains("perspective") && camera.contains("orthographic")) lint.say("cameras", i, "it is of two types");
     const Json& lens = camera[text_or(camera, "type", "perspective")];
-    if (lens.contains("zfar") && lens["zfar"].get<double>() <= lens.value("znear", 0.0))
+    if (number_or(lens, "zfar", HUGE_VAL) <= number_or(lens, "znear", 0))
       lint.say("cameras", i, "it ends before it begins");
-    if (lens.value("xmag", 1.0) == 0 || lens.value("ymag", 1.0) == 0) lint.say("cameras", i, "it has no width");
+    if (number_or(lens, "xmag", 1) == 0 || number_or(lens, "ymag", 1) == 0) lint.say("cameras", i, "it has no width");
   });
 }
 

@@ -177,9 +177,7 @@ void add_instances(Import& in, const PlacedNode& placed) {
   }
 }
 
-}  // namespace
-
-void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings) {
+void import_file(const std::filesystem::path& path, Scene& scene, Warnings& warnings) {
   Gltf gltf = read_gltf(path, warnings);
   scene.sources.push_back(path.filename().string());
   const std::vector<PlacedNode> nodes = place_nodes(gltf);
@@ -199,3 +197,13 @@ void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warn
 }
 
 }  // namespace chandelier::baker
+}  // namespace
+
+void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings) {
+  try {
+    import_file(path, scene, warnings);
+  } catch (const Json::exception& error) {  // of a key that no check asks for
+    fail(path.string(), std::string("is not a glTF that can be read: ") + error.what());
+  }
+}
+

@@ -271,6 +271,18 @@ const Case kCases[] = {
        g.json["materials"] = {{{"name", "m"}, {"normalTexture", {{"index", 0}}}}};
      },
      "material 0 'm', normalTexture, index: points past the end, there are 0 (0)"},
+    {"buffer's extensions of another type",
+     [](GltfBuilder& g) {
+       g.bytes.clear();
+       g.json["buffers"] = {{{"byteLength", 96}, {"extensions", {1}}}};
+     },
+     "buffer 0, extensions: is not an object ([1])"},
+    {"fallback of another type",
+     [](GltfBuilder& g) {
+       g.bytes.clear();
+       g.json["buffers"] = {{{"byteLength", 96}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", "yes"}}}}}}};
+     },
+     "buffer 0, extensions, EXT_meshopt_compression, fallback: is not true or false (\"yes\")"},
 };
 
 TEST(BadInput, IsRefusedWithPlaceFaultAndValue) {
@@ -280,6 +292,55 @@ TEST(BadInput, IsRefusedWithPlaceFaultAndValue) {
     const std::filesystem::path path = gltf.save("bad");
     EXPECT_EQ(error_of(path), path.string() + ": " + each.expected) << each.name;
   }
+}
+
+TEST(BadInput, OfAKeyThatIsNotReadChangesNothing) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}, {"xmag", "wide"}}}}};
+  EXPECT_EQ(error_of(gltf.save()), "");
+}
+
+/// Values of every type in place of each value of a file that has nearly everything.
+void replace_each(Json& at, const std::function<void()>& with_each) {
+  for (Json& each : at) {
+    if (each.is_structured()) replace_each(each, with_each);
+    const Json kept = each;
+    for (const Json& value : {Json(), Json(true), Json(-1), Json(0.5), Json("text"), Json{1}, Json{{"a", 1}}}) {
+      each = value;
+      with_each();
+    }
+    each = kept;
+  }
+}
+
+TEST(BadInput, IsOneLineWhateverTypeAValueHas) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["scenes"] = {{{"nodes", {0}}, {"name", "all"}, {"extensions", Json::object()}}};
+  gltf.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}, {"zfar", 9}, {"xmag", 1}, {"ymag", 1}}}}};
+  gltf.json["nodes"][0].update({{"camera", 0}, {"rotation", {0, 0, 0, 1}}, {"scale", {1, 1, 1}}, {"weights", {0}}});
+  gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 1}}},
+                             {"alphaMode", "MASK"},
+                             {"emissiveFactor", {0, 0, 0}},
+                             {"extensions", {{"KHR_materials_unlit", {{"a", 1}}}}}}};
+  gltf.json["samplers"] = {{{"magFilter", 9729}, {"extensions", {{"a", 1}}}}};
+  primitive(gltf).update({{"material", 0}, {"mode", 4}, {"targets", {{{"POSITION", 0}}}}});
+  gltf.json["meshes"][0]["weights"] = {0.5};
+  gltf.json["extensionsUsed"] = {"KHR_materials_unlit"};
+  Json whole = Json::parse(gltf.text());
+  whole["buffers"][0]["extensions"]["EXT_meshopt_compression"]["fallback"] = false;
+  whole["bufferViews"][0]["target"] = 34962;
+  const std::filesystem::path path = scratch_folder() / "typed.gltf";
+  std::size_t refused = 0;
+  replace_each(whole, [&] {
+    write_bytes(path, whole.dump());
+    const std::string line = error_of(path);  // another exception fails the test
+    refused += !line.empty();
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+    EXPECT_TRUE(line.empty() || line.rfind(path.string() + ": ", 0) == 0) << line;
+    EXPECT_EQ(line.find("json.exception"), std::string::npos) << line << whole;  // the net, not a check
+  });
+  EXPECT_GT(refused, 100u);
 }
 
 std::string error_of_text(const std::string& text) {
