@@ -50,9 +50,17 @@ void weld_all(Meshes& meshes, PassReport& pass) {
   count(pass, "welded", before - vertex_count(meshes));
 }
 
-void clean_all(Meshes& meshes, PassReport& pass) {
+bool is_rigid(const PackedMesh& mesh) {
+  for (const PackedPrimitive& primitive : mesh.primitives) {
+    if (!primitive.skin_vertices.empty()) return false;
+  }
+  return true;
+}
+
+void clean_all(Meshes& meshes, const std::vector<Material>& materials, PassReport& pass) {
   std::vector<CleanCounts> counts(meshes.size());
-  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) { counts[m] = clean(meshes[m]); });
+  tbb::parallel_for(std::size_t{0}, meshes.size(),
+                    [&](std::size_t m) { counts[m] = clean(meshes[m], materials, is_rigid(meshes[m])); });
   CleanCounts all;
   for (const CleanCounts& each : counts) {
     all.degenerate += each.degenerate;
@@ -61,13 +69,6 @@ void clean_all(Meshes& meshes, PassReport& pass) {
   count(pass, "triangles", triangle_count(meshes));
   count(pass, "degenerate", all.degenerate);
   count(pass, "duplicate", all.duplicate);
-}
-
-bool is_rigid(const PackedMesh& mesh) {
-  for (const PackedPrimitive& primitive : mesh.primitives) {
-    if (!primitive.skin_vertices.empty()) return false;
-  }
-  return true;
 }
 
 void find_all_shells(Meshes& meshes, const std::vector<Material>& materials, PassReport& pass) {
@@ -116,7 +117,7 @@ std::vector<MeshRecords> bake_meshes(Scene& scene, const BakeSettings& settings,
     pass.count("uv_error", pack.bake_info.uv_error);
   });
   report.run("weld", [&](PassReport& pass) { weld_all(meshes, pass); });
-  report.run("clean", [&](PassReport& pass) { clean_all(meshes, pass); });
+  report.run("clean", [&](PassReport& pass) { clean_all(meshes, scene.materials, pass); });
   report.run("shells", [&](PassReport& pass) { find_all_shells(meshes, scene.materials, pass); });
   std::vector<MeshRecords> records;
   report.run("batches", [&](PassReport& pass) {

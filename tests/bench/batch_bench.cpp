@@ -198,7 +198,7 @@ void bench(const char* path) {
   std::vector<PackedMesh> meshes = quantize(scene, {}, info);
   for (PackedMesh& mesh : meshes) {
     for (PackedPrimitive& primitive : mesh.primitives) weld(primitive);
-    clean(mesh);
+    clean(mesh, scene.materials, true);
     find_shells(mesh, scene.materials, true);
   }
   fmt::print("{}\n  {:<28} {:>10} {:>10} {:>10} {:>10} {:>8}\n", path, "way", "SAH cost", "3 m sphere", "triangles",

@@ -158,13 +158,48 @@ TEST(Clean, KeepsTheFirstOfEachTriangleWithAnArea) {
         ++duplicate;
       }
     });
-    const CleanCounts counts = clean(mesh);
+    const CleanCounts counts = clean(mesh, kMaterials, true);
     each([&](const PackedPrimitive& primitive, std::size_t t) {
       kept.emplace_back(turned(primitive, t), primitive.material);
     });
     EXPECT_EQ(kept, expected);
     EXPECT_EQ(counts.degenerate, degenerate);
     EXPECT_EQ(counts.duplicate, duplicate);
+  }
+}
+
+/// Two triangles in the same place, each with vertices of its own.
+PackedMesh twins(std::uint32_t material) {
+  PackedPrimitive one = primitive_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2});
+  one.vertices.insert(one.vertices.end(), one.vertices.begin(), one.vertices.begin() + 3);
+  one.indices = {0, 1, 2, 3, 4, 5};
+  one.material = material;
+  return {{one}};
+}
+
+TEST(Clean, KeepsWhatASkinMayPullApart) {
+  PackedMesh mesh = twins(0);
+  mesh.primitives[0].vertices.push_back({{2, 0, 0}, {}});
+  mesh.primitives[0].indices.insert(mesh.primitives[0].indices.end(), {0, 1, 6, 0, 1, 1});  // flat, and without a third
+  const CleanCounts counts = clean(mesh, kMaterials, false);
+  EXPECT_EQ(counts.duplicate, 0u);
+  EXPECT_EQ(counts.degenerate, 1u);
+  EXPECT_EQ(mesh.primitives[0].indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 0, 1, 6}));
+}
+
+TEST(Clean, TellsMaskedTrianglesApartByWhatTheirAlphaDependsOn) {
+  constexpr std::uint32_t kOpaque = 0, kMasked = 1;
+  for (const int change : {0, 1, 2, 3}) {
+    for (const std::uint32_t material : {kOpaque, kMasked}) {
+      PackedMesh mesh = twins(material);
+      pack::VertexAttributes& other = mesh.primitives[0].vertices[4].attributes;
+      if (change == 1) other.uv0.y += 0.5f;
+      if (change == 2) other.uv1.x += 0.5f;
+      if (change == 3) other.color ^= 0x80000000u;
+      ASSERT_EQ(kMaterials[material].masked, material == kMasked);
+      const bool kept = change > 0 && material == kMasked;
+      EXPECT_EQ(clean(mesh, kMaterials, true).duplicate, kept ? 0u : 1u) << change << " " << material;
+    }
   }
 }
 
@@ -242,7 +277,7 @@ TEST(Shells, AgreeWithOpenMeshWhereItHoldsTheMesh) {
       }
     }
     PackedMesh mesh{{primitive}};
-    clean(mesh);
+    clean(mesh, kMaterials, true);
     const auto expected = shells_by_openmesh(mesh.primitives[0]);
     const ShellCounts counts = find_shells(mesh, kMaterials, true);  // must not fail either way
     if (!expected) continue;
