@@ -62,14 +62,14 @@ void write_vertices(const CutPrimitive& cut, const Place& place, pack::Contents&
   });
 }
 
-/// Bounds and cone, from the corners of a batch.
-void measure(std::span<const glm::vec3> corners, pack::Batch& batch) {
+/// Bounds and cone, from the corners of a batch. Where a skin bends it, no cone holds.
+void measure(std::span<const glm::vec3> corners, bool skinned, pack::Batch& batch) {
   batch.bounds_min_ls = batch.bounds_max_ls = corners[0];
   for (const glm::vec3& corner : corners) {
     batch.bounds_min_ls = glm::min(batch.bounds_min_ls, corner);
     batch.bounds_max_ls = glm::max(batch.bounds_max_ls, corner);
   }
-  const NormalCone cone = normal_cone(corners);
+  const NormalCone cone = skinned ? NormalCone{} : normal_cone(corners);
   batch.cone_apex_ls = cone.apex;
   batch.cone_axis_ls = cone.axis;
   batch.cone_cutoff = cone.cutoff;
@@ -94,7 +94,7 @@ void write_batches(const CutPrimitive& cut, const Place& place, bool mirrored, p
         pack.indices[copy.index + i] = {static_cast<std::uint32_t>(place.vertex + cut.indices[from])};
         corners.push_back(cut.vertices[cut.vertex_order[cut.indices[from]]].position_ls);
       }
-      measure(corners, batch);
+      measure(corners, place.skinned, batch);
     }
   });
 }
