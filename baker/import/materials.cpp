@@ -104,6 +104,8 @@ std::uint32_t Materials::add_material(int index) {
     out.normal = use_texture(json, "normalTexture", false, here);
     out.occlusion = use_texture(json, "occlusionTexture", false, here);
     out.emissive_map = use_texture(json, "emissiveTexture", false, here);
+    // Without its map, which may be black nearly everywhere, the whole surface would glow.
+    if (json.contains("emissiveTexture") && out.emissive_map.texture == kNone) out.emissive = glm::vec3(0);
     if (in.alphaMode != "OPAQUE" && in.alphaMode != "MASK" && in.alphaMode != "BLEND") {
       fail(where + ", alphaMode", "is not OPAQUE, MASK or BLEND (" + shortened(in.alphaMode, 40) + ")");
     }
