@@ -2,6 +2,7 @@
 // The rules of a pack that one field alone cannot break.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "pack_schema.h"
@@ -9,7 +10,8 @@
 namespace chandelier::pack {
 
 /// validate() and then the rules between fields. Returns one line that names the first fault, or an empty string.
-[[nodiscard]] std::string check(const View& view);
+/// Big packs are checked in at most `most_threads` threads; 0: as many as there are cores.
+[[nodiscard]] std::string check(const View& view, std::size_t most_threads = 0);
 
 /// Bytes of all levels of an image with valid fields: `image.size_bytes` must be this.
 std::uint64_t image_bytes(const Image& image);

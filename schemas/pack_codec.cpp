@@ -77,6 +77,7 @@ struct Coding {
   Codec codec = Codec::zstd;
   Layouts layouts = {};  // for Codec::columns
   std::vector<std::vector<std::byte>> frames = {};
+  std::vector<std::uint32_t> vertices_before = {};  // for Codec::triangles: of each frame
 };
 
 bool holds_corners(const Coding& coding) {
@@ -101,10 +102,14 @@ void choose_codec(Coding& coding) {
   if (triangles_cost < columns_cost) coding.codec = Codec::triangles;
 }
 
-/// One above the largest corner before a chunk: the next vertex that its triangles use for the first time.
-std::uint32_t vertices_before(const Coding& coding, std::size_t chunk) {
-  const auto before = words_of(coding.records.first(chunk * chunk_records(word) * word));
-  return before.empty() ? 0 : *std::ranges::max_element(before) + 1;
+/// Of each chunk one above the largest corner before it: the next vertex that its triangles use for the first time.
+std::vector<std::uint32_t> vertices_before_chunks(const Coding& coding) {
+  std::vector<std::uint32_t> before(coding.frames.size());
+  for (std::size_t chunk = 1; chunk < before.size(); ++chunk) {
+    const auto corners = words_of(chunk_of(coding.records, word, chunk - 1));
+    before[chunk] = std::max(before[chunk - 1], *std::ranges::max_element(corners) + 1);
+  }
+  return before;
 }
 
 void encode_chunk(Coding& coding, std::size_t chunk) {
@@ -115,7 +120,7 @@ void encode_chunk(Coding& coding, std::size_t chunk) {
   } else if (coding.codec == Codec::columns) {
     frame = compress(to_columns(records, coding.stride, coding.layouts), record_level);
   } else {
-    frame = compress(to_triangle_code(words_of(records), vertices_before(coding, chunk)), record_level);
+    frame = compress(to_triangle_code(words_of(records), coding.vertices_before[chunk]), record_level);
   }
 }
 
@@ -190,7 +195,7 @@ std::string find_frames(const CodedSection& section, std::size_t number, std::ve
 
 }  // namespace
 
-std::vector<Encoded> encode_sections(const View& view) {
+std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads) {
   std::vector<Coding> codings;
   for (std::size_t i = 0; i < section_infos.size(); ++i) {
     const Bytes records = section_bytes(view, i);
@@ -199,12 +204,16 @@ std::vector<Encoded> encode_sections(const View& view) {
     codings.push_back({i, records, stride});
     codings.back().frames.resize(chunk_count(records.size() / stride, stride));
   }
-  parallel_for(codings.size(), [&](std::size_t i) { choose_codec(codings[i]); });
+  parallel_for(codings.size(), most_threads, [&](std::size_t i) {
+    choose_codec(codings[i]);
+    if (codings[i].codec == Codec::triangles) codings[i].vertices_before = vertices_before_chunks(codings[i]);
+  });
   std::vector<std::pair<std::size_t, std::size_t>> chunks;  // of codings and their frames
   for (std::size_t i = 0; i < codings.size(); ++i) {
     for (std::size_t j = 0; j < codings[i].frames.size(); ++j) chunks.emplace_back(i, j);
   }
-  parallel_for(chunks.size(), [&](std::size_t i) { encode_chunk(codings[chunks[i].first], chunks[i].second); });
+  parallel_for(chunks.size(), most_threads,
+               [&](std::size_t i) { encode_chunk(codings[chunks[i].first], chunks[i].second); });
   std::vector<Encoded> encoded(section_infos.size());
   for (const Coding& coding : codings) encoded[coding.section] = encoded_of(coding);
   return encoded;
@@ -225,12 +234,12 @@ std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint6
   return {};
 }
 
-std::vector<std::string> decode_sections(std::span<const CodedSection> sections) {
+std::vector<std::string> decode_sections(std::span<const CodedSection> sections, std::size_t most_threads) {
   std::vector<std::string> faults(sections.size());
   std::vector<Task> tasks;
   for (std::size_t i = 0; i < sections.size(); ++i) faults[i] = find_frames(sections[i], i, tasks);
   std::vector<std::string> task_faults(tasks.size());
-  parallel_for(tasks.size(), [&](std::size_t i) {
+  parallel_for(tasks.size(), most_threads, [&](std::size_t i) {
     const CodedSection& section = sections[tasks[i].section];
     if (!faults[tasks[i].section].empty()) return;
     const auto records = chunk_of(section.records, section.stride_bytes, tasks[i].chunk);

@@ -17,8 +17,8 @@ struct Encoded {
 };
 
 /// For each section of section_infos what the codec makes of it that is best for a sample; raw where that saves less
-/// than a twentieth. Same view, same bytes, whatever the number of threads.
-std::vector<Encoded> encode_sections(const View& view);
+/// than a twentieth. Same view, same bytes, whatever the number of threads; with 0 all cores work.
+std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads = 0);
 
 /// One section that is stored with a codec, and where its records go.
 struct CodedSection {
@@ -29,10 +29,11 @@ struct CodedSection {
 };
 
 /// What is wrong with the codec or the sizes, which are not trusted; an empty string if decoding can be tried. Records
-/// of more than max_decode_ratio times the stored bytes are refused, so a small file cannot ask for much memory.
+/// of more than about max_decode_ratio times the stored bytes are refused: what a file can ask for is bounded by its
+/// size, if not to little. 10 MB may ask for 10 GB, as honest sections of zeros do.
 std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count);
 
 /// Decodes all; none is raw and all passed coded_size_fault(). Gives for each what is wrong with it or an empty string.
-std::vector<std::string> decode_sections(std::span<const CodedSection> sections);
+std::vector<std::string> decode_sections(std::span<const CodedSection> sections, std::size_t most_threads = 0);
 
 }  // namespace chandelier::pack

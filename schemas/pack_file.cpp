@@ -48,8 +48,8 @@ std::uint64_t align_up(std::uint64_t offset) {
 
 /// Calls `body` for each section, in threads where the file is big enough for that.
 template <typename Body>
-void for_each_section(std::uint64_t file_bytes, std::size_t count, const Body& body) {
-  if (file_bytes >= few_bytes) return parallel_for(count, body);
+void for_each_section(std::uint64_t file_bytes, std::size_t count, std::size_t most_threads, const Body& body) {
+  if (file_bytes >= few_bytes) return parallel_for(count, most_threads, body);
   for (std::size_t i = 0; i < count; ++i) body(i);
 }
 
@@ -90,21 +90,22 @@ FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
   return layout;
 }
 
-/// The sections first, some at a time, then what holds their checksums.
-void write_all(TemporaryFile& file, const View& view, Compression compression) {
+/// The sections first, some at a time, then what holds their checksums. Returns the file's size.
+std::uint64_t write_all(TemporaryFile& file, const View& view, Compression compression, std::size_t most_threads) {
   std::vector<Encoded> encoded;
-  if (compression == Compression::smallest) encoded = encode_sections(view);
+  if (compression == Compression::smallest) encoded = encode_sections(view, most_threads);
   FileLayout layout = lay_out(view, encoded);
   const auto write_one = [&](std::size_t i) {
     const std::span<const std::byte> bytes = layout.sections[i];
     layout.table[i].checksum = XXH3_64bits(bytes.data(), bytes.size());
     file.write(layout.table[i].offset_bytes, bytes.data(), bytes.size());
   };
-  for_each_section(layout.header.file_bytes, layout.table.size(), write_one);
+  for_each_section(layout.header.file_bytes, layout.table.size(), most_threads, write_one);
   const std::size_t table_bytes = layout.table.size() * sizeof(SectionEntry);
   layout.header.table_checksum = XXH3_64bits(layout.table.data(), table_bytes);
   file.write(0, &layout.header, sizeof(FileHeader));
   file.write(sizeof(FileHeader), layout.table.data(), table_bytes);
+  return layout.header.file_bytes;
 }
 
 // ---- Reading
@@ -219,21 +220,22 @@ std::string table_fault(std::span<const std::byte> file, std::span<const Section
   return {};
 }
 
-std::string checksum_fault(std::span<const std::byte> file, const std::vector<Found>& sections) {
+std::string checksum_fault(std::span<const std::byte> file, const std::vector<Found>& sections,
+                           std::size_t most_threads) {
   std::vector<std::string> faults(sections.size());
   const auto check_one = [&](std::size_t i) {
     const SectionEntry& entry = sections[i].entry;
     const std::uint64_t checksum = XXH3_64bits(file.data() + entry.offset_bytes, entry.size_bytes);
     if (entry.checksum != checksum) faults[i] = in_section(sections[i], wrong("checksum", entry.checksum, checksum));
   };
-  for_each_section(file.size(), sections.size(), check_one);
+  for_each_section(file.size(), sections.size(), most_threads, check_one);
   const auto first = std::ranges::find_if(faults, [](const std::string& line) { return !line.empty(); });
   return first == faults.end() ? std::string() : *first;
 }
 
 /// Points `view` at the sections' records: in the file, or in `decoded`, which it makes.
-std::string place_records(std::span<const std::byte> file, const std::vector<Found>& sections, Mapping& decoded,
-                          View& view) {
+std::string place_records(std::span<const std::byte> file, const std::vector<Found>& sections, std::size_t most_threads,
+                          Mapping& decoded, View& view) {
   std::uint64_t bytes = 0;
   for (const Found& found : sections) {
     if (found.entry.codec != Codec::raw) bytes += align_up(found.entry.count * found.entry.stride_bytes);
@@ -259,7 +261,7 @@ std::string place_records(std::span<const std::byte> file, const std::vector<Fou
     }
     set_section(view, found.info, records, entry.count);
   }
-  const std::vector<std::string> faults = decode_sections(coded);
+  const std::vector<std::string> faults = decode_sections(coded, most_threads);
   for (std::size_t i = 0; i < coded.size(); ++i) {
     if (faults[i].empty()) continue;
     return in_section(*coded_found[i], "codec: " + std::string(name_of(coded[i].codec)) + ": " + faults[i]);
@@ -269,26 +271,34 @@ std::string place_records(std::span<const std::byte> file, const std::vector<Fou
 
 }  // namespace
 
-void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression) {
+void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression,
+           std::size_t most_threads) {
   TemporaryFile file(path);
-  write_all(file, view, compression);
+  write_all(file, view, compression, most_threads);
   file.commit(sync);
 }
 
-void write(const std::filesystem::path& path, const Contents& contents, Compression compression) {
-  write(path, view_of(contents), Sync::yes, compression);
+void write(const std::filesystem::path& path, const Contents& contents, Compression compression,
+           std::size_t most_threads) {
+  write(path, view_of(contents), Sync::yes, compression, most_threads);
 }
 
-Writer::Writer(const std::filesystem::path& path, const Contents& contents, Compression compression) : file_(path) {
-  write_all(file_, view_of(contents), compression);
+Writer::Writer(const std::filesystem::path& path, const Contents& contents, Compression compression,
+               std::size_t most_threads)
+    : file_(path), size_bytes_(write_all(file_, view_of(contents), compression, most_threads)) {
   try {
     syncing_ = std::async(std::launch::async, [this] { file_.sync(); });
-  } catch (const std::system_error&) {  // no thread to be had: commit() syncs
+  } catch (const std::system_error&) {  // no thread to be had: sync() does it
   }
 }
 
+void Writer::sync() {
+  if (syncing_.valid()) return syncing_.get();
+  file_.sync();
+}
+
 void Writer::commit() {
-  if (syncing_.valid()) syncing_.get();
+  if (syncing_.valid()) sync();
   file_.commit(Sync::yes);
 }
 
@@ -296,7 +306,7 @@ Mapping::~Mapping() {
   if (data_) munmap(data_, size_);
 }
 
-File::File(const std::filesystem::path& path) : file_(map_file(path)) {
+File::File(const std::filesystem::path& path, std::size_t most_threads) : file_(map_file(path)) {
   const std::span<const std::byte> bytes = file_.bytes();
   const FileHeader& header = *reinterpret_cast<const FileHeader*>(bytes.data());
   if (std::string line = header_fault(header, bytes.size()); !line.empty()) fail(path, line);
@@ -306,9 +316,9 @@ File::File(const std::filesystem::path& path) : file_(map_file(path)) {
   }
   std::vector<Found> sections;
   if (std::string line = table_fault(bytes, table_, sections); !line.empty()) fail(path, line);
-  if (std::string line = checksum_fault(bytes, sections); !line.empty()) fail(path, line);
-  if (std::string line = place_records(bytes, sections, decoded_, view_); !line.empty()) fail(path, line);
-  if (std::string line = check(view_); !line.empty()) fail(path, line);
+  if (std::string line = checksum_fault(bytes, sections, most_threads); !line.empty()) fail(path, line);
+  if (std::string line = place_records(bytes, sections, most_threads, decoded_, view_); !line.empty()) fail(path, line);
+  if (std::string line = check(view_, most_threads); !line.empty()) fail(path, line);
 }
 
 File::File(File&& other) noexcept

@@ -25,21 +25,29 @@ enum class Compression { off, smallest };
 
 /// Writes `contents` to a temporary file beside `path`, syncs it and renames it over `path`; on failure nothing is left
 /// behind and an older pack stays. Same contents, same bytes. Values are not looked at: check() of pack_checks.h says
-/// beforehand whether the pack will open. Throws Error.
-void write(const std::filesystem::path& path, const Contents& contents, Compression compression = Compression::off);
-void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression = Compression::off);
+/// beforehand whether the pack will open. Big packs are written in at most `most_threads` threads; 0: as many as there
+/// are cores. Throws Error.
+void write(const std::filesystem::path& path, const Contents& contents, Compression compression = Compression::off,
+           std::size_t most_threads = 0);
+void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression = Compression::off,
+           std::size_t most_threads = 0);
 
 /// write() in two steps, between which the disk works on its own.
 class Writer {
  public:
   /// Writes the temporary file and begins to sync it. `contents` are not needed any more. Throws Error.
-  Writer(const std::filesystem::path& path, const Contents& contents, Compression compression);
+  Writer(const std::filesystem::path& path, const Contents& contents, Compression compression,
+         std::size_t most_threads = 0);
   Writer(const Writer&) = delete;
-  /// Waits for the disk and puts the file in its place; without it nothing is left behind. Throws Error.
+  std::uint64_t size_bytes() const { return size_bytes_; }
+  /// Waits for the disk. Throws Error.
+  void sync();
+  /// The same, and puts the file in its place; without it nothing is left behind. Throws Error.
   void commit();
 
  private:
   TemporaryFile file_;
+  std::uint64_t size_bytes_;
   std::future<void> syncing_;  // waits before file_ goes
 };
 
@@ -66,8 +74,8 @@ class Mapping {
 /// A mapped pack. Every offset, count, index, enum and float has been checked when the constructor returns.
 class File {
  public:
-  /// Throws Error.
-  explicit File(const std::filesystem::path& path);
+  /// Checks and decodes big packs in at most `most_threads` threads; 0: as many as there are cores. Throws Error.
+  explicit File(const std::filesystem::path& path, std::size_t most_threads = 0);
   File(File&& other) noexcept;
   File& operator=(File&& other) noexcept;
 

@@ -13,9 +13,10 @@
 
 namespace chandelier::pack {
 
-/// Calls `body(i)` once for each i below `count`, in any order and at the same time. Throws what a call threw.
+/// Calls `body(i)` once for each i below `count`, in any order and at the same time, in at most `most_threads` threads
+/// with this one; 0: as many as there are cores. Throws what a call threw.
 template <typename Body>
-void parallel_for(std::size_t count, const Body& body) {
+void parallel_for(std::size_t count, std::size_t most_threads, const Body& body) {
   std::atomic<std::size_t> next = 0;
   std::exception_ptr thrown;
   std::mutex mutex;
@@ -30,7 +31,7 @@ void parallel_for(std::size_t count, const Body& body) {
     }
   };
   std::vector<std::jthread> threads;
-  const std::size_t wanted = std::min<std::size_t>(count, std::thread::hardware_concurrency());
+  const std::size_t wanted = std::min(count, most_threads ? most_threads : std::thread::hardware_concurrency());
   try {
     for (std::size_t i = 1; i < wanted; ++i) threads.emplace_back(work);
   } catch (const std::system_error&) {  // no more threads to be had: those that there are do all

@@ -30,15 +30,24 @@ struct Errors {
 
 /// Which attributes are ever read.
 struct Needs {
-  bool tangent = false, uv0 = false, uv1 = false;
+  bool tangent = false;
+  double uv0 = 0, uv1 = 0;  // 0: not read
 };
+
+/// Along the image's u or v, whichever is more, where the mesh's u and v are each off by 1.
+double uv_scale(const UvTransform& transform) {
+  const auto sum = [](const glm::vec3& row) { return std::abs(double{row.x}) + std::abs(double{row.y}); };
+  return std::max(sum(transform[0]), sum(transform[1]));
+}
 
 Needs needs_of(const Material& material) {
   Needs needs;
   needs.tangent = material.normal.texture != kNone;
   for (const TextureUse* use : {&material.base_color, &material.metallic_roughness, &material.normal,
                                 &material.occlusion, &material.emissive_map}) {
-    if (use->texture != kNone) (use->uv1 ? needs.uv1 : needs.uv0) = true;
+    if (use->texture == kNone) continue;
+    double& scale = use->uv1 ? needs.uv1 : needs.uv0;
+    scale = std::max({scale, uv_scale(use->uv_transform), 1e-30});  // a scale of 0 reads too
   }
   return needs;
 }
@@ -66,17 +75,24 @@ class Grid {
 };
 
 struct Coding {
-  Grid position, uv;
+  Grid position, uv0, uv1;
   int normal_bits, tangent_bits;
 };
+
+/// Finer by a power of two where the image's coordinates are a multiple of the mesh's (KHR_texture_transform).
+Grid uv_grid(int bits, double scale) {
+  if (bits == 0) return Grid(0);
+  return Grid(std::exp2(-bits - std::ceil(std::log2(std::max(scale, 1.0)))));
+}
 
 double chord(const glm::vec3& a, const glm::vec3& b) {
   return glm::distance(glm::normalize(glm::dvec3(a)), glm::normalize(glm::dvec3(b)));
 }
 
-glm::vec2 code_uv(const glm::vec2& uv, const Coding& coding, Errors& errors) {
-  const glm::vec2 out = coding.uv.snap_all(uv);
-  errors.uv = std::max({errors.uv, std::abs(double{out.x} - uv.x), std::abs(double{out.y} - uv.y)});
+glm::vec2 code_uv(const glm::vec2& uv, const Grid& grid, double scale, Errors& errors) {
+  if (scale == 0) return glm::vec2(0);
+  const glm::vec2 out = grid.snap_all(uv);
+  errors.uv = std::max(errors.uv, scale * std::max(std::abs(double{out.x} - uv.x), std::abs(double{out.y} - uv.y)));
   return out;
 }
 
@@ -93,8 +109,8 @@ PackedVertex code(const Vertex& in, const Coding& coding, const Needs& needs, Er
     to.tangent_ls = pack::encode_tangent(in.tangent_ls, coding.tangent_bits);
     errors.chord = std::max(errors.chord, chord(pack::decode_tangent(to.tangent_ls), in.tangent_ls));
   }
-  to.uv0 = needs.uv0 ? code_uv(in.uv0, coding, errors) : glm::vec2(0);
-  to.uv1 = needs.uv1 ? code_uv(in.uv1, coding, errors) : glm::vec2(0);
+  to.uv0 = code_uv(in.uv0, coding.uv0, needs.uv0, errors);
+  to.uv1 = code_uv(in.uv1, coding.uv1, needs.uv1, errors);
   to.color = in.color;
   return out;
 }
@@ -189,8 +205,6 @@ std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings,
       const double step = settings.position_error_m > 0
                               ? grid_step(settings.position_error_m, scales[m], longest_side(scene.meshes[m]))
                               : 0;
-      const Coding coding{Grid(step), Grid(settings.uv_bits > 0 ? std::exp2(-settings.uv_bits) : 0),
-                          settings.normal_bits, std::min(settings.normal_bits, 15)};
       for (Primitive& primitive : primitives) {
         const Needs needs = needs_of(scene.materials[primitive.material]);
         out[m].primitives.push_back(code(std::move(primitive), coding, needs, errors[m]));
@@ -212,3 +226,5 @@ std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings,
 }
 
 }  // namespace chandelier::baker
+        const Coding coding{Grid(step), uv_grid(settings.uv_bits, needs.uv0), uv_grid(settings.uv_bits, needs.uv1),
+                            settings.normal_bits, std::min(settings.normal_bits, 15)};

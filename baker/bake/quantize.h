@@ -9,7 +9,7 @@ namespace chandelier::baker {
 struct QuantizeSettings {
   float position_error_m = 0.0005f;  // in the world; 0 keeps floats
   int normal_bits = 10;
-  int uv_bits = 14;  // after the point; 0 keeps floats
+  int uv_bits = 14;  // after the point, of the image's coordinates; 0 keeps floats
 };
 
 /// The most that the upper left 3×3 matrix stretches a vector.

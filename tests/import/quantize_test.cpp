@@ -103,6 +103,30 @@ TEST(Quantize, KeepsTheErrorsThatItStates) {
   }
 }
 
+TEST(Quantize, KeepsItsErrorInTheImageWhateverTheTransform) {
+  std::mt19937 random(11);
+  for (const float scale : {0.25f, 1.0f, 3.0f, 64.0f, 1e9f}) {
+    Scene before = random_scene(random, 4);
+    TextureUse& use = before.materials[0].base_color;  // of uv1; the normal map's uv0 is as it is
+    use.uv_transform = {glm::vec3(0.6f * scale, 0.8f * scale, 5), glm::vec3(-0.8f * scale, 0.6f * scale, 7)};
+    Scene scene = before;
+    pack::BakeInfo info;
+    const std::vector<PackedMesh> meshes = quantize(scene, {.uv_bits = 12}, info);
+    double uv0 = 0, uv1 = 0;
+    for (std::size_t i = 0; i < 3000; ++i) {
+      const Vertex& in = before.meshes[0].primitives[0].vertices[i];
+      const pack::VertexAttributes& out = meshes[0].primitives[0].vertices[i].attributes;
+      const glm::dvec2 off = glm::dvec2(out.uv1) - glm::dvec2(in.uv1);
+      for (const glm::vec3& row : use.uv_transform) uv1 = std::max(uv1, std::abs(row.x * off.x + row.y * off.y));
+      for (int k = 0; k < 2; ++k) uv0 = std::max(uv0, std::abs(double{out.uv0[k]} - in.uv0[k]));
+    }
+    EXPECT_LE(std::max(uv0, uv1), info.uv_error) << scale;
+    EXPECT_LE(info.uv_error, 0.5 / 4096 * (1 + 1e-6)) << scale;
+    EXPECT_GT(uv0, 0.4 / 4096) << scale;  // which another set's transform makes no finer
+    if (scale == 64) EXPECT_GT(uv1, 0.1 / 4096);
+  }
+}
+
 TEST(Quantize, MovesSharedPlacesTogetherAndLeavesOutWhatNothingReads) {
   std::mt19937 random(6);
   Scene scene = random_scene(random, 4);

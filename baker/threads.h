@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many threads --threads allows where oneTBB does not run the work.
+#pragma once
+
+#include <tbb/global_control.h>
+#include <tbb/task.h>
+
+#include <cstddef>
+
+namespace chandelier::baker {
+
+/// What a call from here may use: oneTBB's limit, and inside its tasks, of which others run already, this thread alone.
+inline std::size_t most_threads() {
+  if (tbb::task::current_context()) return 1;
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+}  // namespace chandelier::baker
