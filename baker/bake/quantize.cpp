@@ -28,7 +28,7 @@ struct Errors {
   }
 };
 
-/// Which attributes are ever read.
+/// Which attributes are ever read. Texture coordinates: how much an image's, at most, are off for each of theirs.
 struct Needs {
   bool tangent = false;
   double uv0 = 0, uv1 = 0;  // 0: not read
@@ -146,25 +146,65 @@ double longest_side(const Mesh& mesh) {
   return std::max({high.x - low.x, high.y - low.y, high.z - low.z, 0.0});
 }
 
-std::vector<glm::dmat4> world_from_nodes(const Scene& scene) {
-  std::vector<glm::dmat4> out;
-  for (const Node& node : scene.nodes) {
-    out.push_back(node.parent == kNone ? node.parent_from_local : out[node.parent] * node.parent_from_local);
+/// Per node: the largest scale of its keys; below 0 where none is animated.
+std::vector<double> key_scales(const Scene& scene) {
+  std::vector<double> out(scene.nodes.size(), -1);
+  for (const Animation& animation : scene.animations) {
+    for (const AnimationChannel& channel : animation.channels) {
+      if (channel.path != AnimationPath::scale) continue;
+      const bool cubic = channel.interpolation == Interpolation::cubic_spline;  // tangent, value, tangent
+      for (std::size_t i = 0; i < channel.values.size(); ++i) {
+        if (cubic && i / 3 % 3 != 1) continue;
+        out[channel.node] = std::max(out[channel.node], std::abs(double{channel.values[i]}));
+      }
+    }
   }
   return out;
 }
 
-/// Per mesh: the most that an instance stretches it, in the rest pose; below 0 where there is no instance.
+/// What a node stretches.
+struct Stretch {
+  glm::dmat4 world{1};  // at rest
+  bool grows = false;   // its scale is animated, or that of a node above it
+  double most = 0;      // if it grows: at whatever keys of it and those above
+};
+
+std::vector<Stretch> stretches_of(const Scene& scene) {
+  const std::vector<double> keys = key_scales(scene);
+  std::vector<Stretch> out;
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    const Node& node = scene.nodes[n];
+    const Stretch above = node.parent == kNone ? Stretch{.most = 1} : out[node.parent];
+    const double own = std::max(largest_scale(node.parent_from_local), keys[n]);
+    out.push_back({above.world * node.parent_from_local, above.grows || keys[n] >= 0, above.most * own});
+  }
+  return out;
+}
+
+double scale_of(const MeshInstance& instance, const std::vector<Stretch>& nodes) {
+  const double rest = largest_scale(instance.world_from_local);
+  if (instance.node == kNone || !nodes[instance.node].grows) return rest;
+  const Stretch& node = nodes[instance.node];
+  if (node.world == instance.world_from_local) return std::max(rest, node.most);
+  return std::max(rest, node.most * largest_scale(glm::inverse(node.world) * instance.world_from_local));  // a copy
+}
+
+double scale_of(const Joint& joint, const std::vector<Stretch>& nodes) {
+  const glm::dmat4 bind(joint.joint_from_bind);
+  const Stretch& node = nodes[joint.node];
+  return std::max(largest_scale(node.world * bind), node.grows ? node.most * largest_scale(bind) : 0);
+}
+
+/// Per mesh: the most that an instance stretches it, at rest and at animated scales; below 0 where there is no
+/// instance.
 std::vector<double> largest_scales(const Scene& scene) {
-  const std::vector<glm::dmat4> nodes = world_from_nodes(scene);
+  const std::vector<Stretch> nodes = stretches_of(scene);
   std::vector<double> out(scene.meshes.size(), -1);
   for (const MeshInstance& instance : scene.instances) {
     double& largest = out[instance.mesh];
-    largest = std::max(largest, largest_scale(instance.world_from_local));
+    largest = std::max(largest, scale_of(instance, nodes));
     if (instance.skin == kNone) continue;
-    for (const Joint& joint : scene.skins[instance.skin].joints) {
-      largest = std::max(largest, largest_scale(nodes[joint.node] * glm::dmat4(joint.joint_from_bind)));
-    }
+    for (const Joint& joint : scene.skins[instance.skin].joints) largest = std::max(largest, scale_of(joint, nodes));
   }
   return out;
 }
@@ -207,6 +247,8 @@ std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings,
                               : 0;
       for (Primitive& primitive : primitives) {
         const Needs needs = needs_of(scene.materials[primitive.material]);
+        const Coding coding{Grid(step), uv_grid(settings.uv_bits, needs.uv0), uv_grid(settings.uv_bits, needs.uv1),
+                            settings.normal_bits, std::min(settings.normal_bits, 15)};
         out[m].primitives.push_back(code(std::move(primitive), coding, needs, errors[m]));
       }
     }
@@ -226,5 +268,3 @@ std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings,
 }
 
 }  // namespace chandelier::baker
-        const Coding coding{Grid(step), uv_grid(settings.uv_bits, needs.uv0), uv_grid(settings.uv_bits, needs.uv1),
-                            settings.normal_bits, std::min(settings.normal_bits, 15)};

@@ -48,6 +48,22 @@ glm::dmat4 place_of_mesh(const Import& in, const PlacedNode& placed) {
   return is_degenerate(by_joint) ? placed.world_from_local : by_joint;
 }
 
+/// Whether a place without a volume is only that of the rest pose. Copies (EXT_mesh_gpu_instancing) need an inverse of
+/// their node's.
+bool may_grow(const Import& in, const PlacedNode& placed) {
+  const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
+  if (node.extensions.contains("EXT_mesh_gpu_instancing")) return false;
+  if (skin_of(in, node) == kNone) return in.motion.moves[placed.node];
+  const Json& joints = in.gltf.json["skins"][static_cast<std::size_t>(node.skin)]["joints"];
+  return std::any_of(joints.begin(), joints.end(),
+                     [&](const Json& joint) { return in.motion.moves[joint.get<std::size_t>()] != 0; });
+}
+
+void warn_of_scale(const Import& in, const PlacedNode& placed) {
+  in.warnings.add(in.gltf.file, place(in.gltf.json, "nodes", placed.node),
+                  "a mesh whose scale is zero or not within 1e-9 to 1e9 is skipped");
+}
+
 /// Everything but meshes; notes which meshes are used.
 void visit_node(Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
@@ -61,11 +77,7 @@ void visit_node(Import& in, const PlacedNode& placed) {
   }
   if (in.scene.cameras.size() > cameras) in.scene.cameras.back().node = mover;
   if (node.mesh < 0) return;
-  if (is_degenerate(place_of_mesh(in, placed))) {
-    in.warnings.add(in.gltf.file, place(in.gltf.json, "nodes", placed.node),
-                    "a mesh whose scale is zero or not within 1e-9 to 1e9 is skipped");
-    return;
-  }
+  if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return warn_of_scale(in, placed);
   MeshUse& use = in.meshes[static_cast<std::size_t>(node.mesh)];
   use.skinned = use.skinned || skin_of(in, node) != kNone;
   if (use.number != kNone) return;
@@ -151,11 +163,13 @@ void add_instances(Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   if (node.mesh < 0) return;
   const MeshUse& mesh = in.meshes[static_cast<std::size_t>(node.mesh)];
-  if (is_degenerate(place_of_mesh(in, placed))) return;
+  if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return;
   const std::string here = place(in.gltf.json, "nodes", placed.node), where = in.gltf.file + ": " + here;
   MeshInstance instance{node.name, where, placed.world_from_local, mesh.number, in.motion.mover(placed.node)};
   instance.skin = checked_skin(in, node, here);
   if (instance.skin != kNone) instance.world_from_local = place_of_mesh(in, placed);
+  const bool grows = instance.node != kNone || instance.skin != kNone;
+  if (is_degenerate(instance.world_from_local) && !grows) return warn_of_scale(in, placed);
   const auto places = read_instances(in.gltf, placed.node);
   if (!places || instance.skin != kNone) {
     if (places) in.warnings.add(in.gltf.file, here, "EXT_mesh_gpu_instancing on a mesh with a skin is ignored");
@@ -196,7 +210,6 @@ void import_file(const std::filesystem::path& path, Scene& scene, Warnings& warn
   scene.files_read.insert(scene.files_read.end(), gltf.files_read.begin(), gltf.files_read.end());
 }
 
-}  // namespace chandelier::baker
 }  // namespace
 
 void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings) {
@@ -207,3 +220,4 @@ void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warn
   }
 }
 
+}  // namespace chandelier::baker

@@ -149,6 +149,87 @@ TEST(Skin, IsKeptWithItsJointsAndItsBindPose) {
   EXPECT_EQ(pack.meshes.at(0).skin_vertex_count, 3u);
 }
 
+TEST(Animation, KeepsAMeshThatGrowsFromNothing) {
+  for (const bool above : {false, true}) {  // the mesh's own node, or the one above it
+    GltfBuilder gltf = moving_triangle("scale");
+    gltf.json["nodes"][1]["scale"] = {0, 0, 0};
+    gltf.json["nodes"][2]["scale"] = {0, 0, 0};
+    if (!above) gltf.json["nodes"][1] = {{"name", "arm"}, {"mesh", 0}, {"scale", {0, 0, 0}}};
+    const int grown = gltf.add_floats({0, 0, 0, 40, 40, 40}, "VEC3", 3);
+    gltf.json["animations"][0]["samplers"][0]["output"] = grown;
+    gltf.json["nodes"][0].erase(above ? "none" : "mesh");
+    Warnings warnings;
+    const Scene scene = gltf.import(&warnings);
+    ASSERT_EQ(scene.instances.size(), 1u) << above;
+    EXPECT_EQ(warnings.lines().size(), 1u);  // of "still", which stays a point
+    const pack::Contents pack = gltf.bake({.position_error_m = 0.01f});  // checks the pack too
+    ASSERT_EQ(pack.instances.size(), 1u);
+    EXPECT_EQ(pack.instances[0].dynamic, 1u);
+    EXPECT_EQ(pack.instances[0].node, above ? 1u : 0u);
+    EXPECT_TRUE(pack.batch_bvh.empty());
+    EXPECT_TRUE(pack.instance_bvh.empty());
+    EXPECT_EQ(pack.indices.size(), 3u);
+  }
+}
+
+TEST(Animation, MeasuresErrorsAtTheScalesThatItReaches) {
+  GltfBuilder gltf = moving_triangle("scale");
+  gltf.json["nodes"][0]["scale"] = {0.5, 0.5, 0.5};
+  gltf.json["nodes"].erase(2);
+  gltf.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
+      gltf.add_positions({0.1f, 0.2f, 0.3f, 70, 0.7f, 0, 0, 1.3f, 90.1f});
+  gltf.json["animations"][0]["samplers"][0]["output"] = gltf.add_floats({1, 1, 1, 0, -64, 0}, "VEC3", 3);
+  const Scene scene = gltf.import();
+  const pack::Contents pack = gltf.bake({.position_error_m = 0.01f});
+  double farthest = 0;  // at the last key: 64 times the mesh's own 0.5
+  for (const Vertex& vertex : scene.meshes.at(0).primitives.at(0).vertices) {
+    double nearest = INFINITY;
+    for (const pack::Position& p : pack.positions) {
+      nearest = std::min(nearest, 32.0 * glm::distance(glm::dvec3(p.position_ls), glm::dvec3(vertex.position_ls)));
+    }
+    farthest = std::max(farthest, nearest);
+  }
+  EXPECT_GT(farthest, 0);
+  EXPECT_LE(farthest, pack.bake_info.position_error_m);
+  EXPECT_LE(pack.bake_info.position_error_m, 0.01f);
+}
+
+TEST(Skin, ThatIsIgnoredLeavesItsMeshWhereItsNodeIs) {
+  GltfBuilder gltf = skinned_triangle();
+  gltf.json["meshes"][0]["primitives"][0]["attributes"].erase("JOINTS_0");
+  gltf.json["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
+  gltf.json["nodes"][0]["scale"] = {0, 0, 0};
+  Warnings warnings;
+  EXPECT_TRUE(gltf.import(&warnings).instances.empty());
+  ASSERT_EQ(warnings.lines().size(), 2u);
+  EXPECT_NE(warnings.lines()[1].find("a mesh whose scale is zero"), std::string::npos);
+}
+
+TEST(Skin, LeavesItsBatchesWithoutCones) {
+  GltfBuilder gltf = skinned_triangle();
+  const pack::Contents bent = gltf.bake();
+  ASSERT_EQ(bent.batches.size(), 1u);
+  EXPECT_EQ(bent.batches[0].cone_cutoff, 1);
+  EXPECT_EQ(bent.batches[0].cone_axis_ls, glm::vec3(0));
+  gltf.json["nodes"][0].erase("skin");
+  EXPECT_LT(gltf.bake().batches.at(0).cone_cutoff, 1);
+}
+
+TEST(Skin, KeepsTrianglesThatAreTogetherOnlyInTheBindPose) {
+  GltfBuilder gltf = skinned_triangle();
+  Json& primitive = gltf.json["meshes"][0]["primitives"][0];
+  primitive.erase("indices");
+  const std::vector<float> twins = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+  primitive["attributes"]["POSITION"] = gltf.add_positions(twins);
+  std::vector<std::uint8_t> joints(24, 0);
+  for (std::size_t i = 12; i < 24; i += 4) joints[i] = 1;
+  primitive["attributes"]["JOINTS_0"] = gltf.add_accessor<std::uint8_t>(joints, kUnsignedByte, "VEC4", 6);
+  std::vector<float> weights(24, 0);
+  for (std::size_t i = 0; i < 24; i += 4) weights[i] = 1;
+  primitive["attributes"]["WEIGHTS_0"] = gltf.add_floats(weights, "VEC4", 4);
+  EXPECT_EQ(gltf.bake().indices.size(), 6u);
+}
+
 TEST(Skin, QuantizesItsWeights) {
   const Scene scene = skinned_triangle().import();
   const std::vector<SkinVertex>& vertices = scene.meshes.at(0).primitives.at(0).skin_vertices;
