@@ -55,6 +55,12 @@ int add_compressed(GltfBuilder& gltf, const Bytes& data, const char* mode, std::
   return view;
 }
 
+/// Where a rotation takes (1, 0, 0).
+glm::dvec3 turned_by(const float* xyzw) {
+  const double x = xyzw[0], y = xyzw[1], z = xyzw[2], w = xyzw[3];
+  return {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+}
+
 Bytes encode_vertices(const void* data, std::size_t count, std::size_t stride) {
   Bytes out(meshopt_encodeVertexBufferBound(count, stride));
   out.resize(meshopt_encodeVertexBuffer(out.data(), out.size(), data, count, stride));
@@ -136,6 +142,26 @@ TEST(Meshopt, AppliesTheOctahedralAndTheExponentialFilter) {
   }
 }
 
+// The filter is of four shorts; a glTF's rotations are where it may stand.
+TEST(Meshopt, AppliesTheQuaternionFilter) {
+  const float half = std::sqrt(0.5f);
+  const std::vector<float> rotations = {0.5f, -0.5f, 0.5f, 0.5f, 0, 0, half, half};
+  Bytes filtered(16);
+  meshopt_encodeFilterQuat(filtered.data(), 2, 8, 16, rotations.data());
+  GltfBuilder gltf = one_triangle();
+  gltf.fallback_bytes = 1u << 20;
+  const int view = add_compressed(gltf, encode_vertices(filtered.data(), 2, 8), "ATTRIBUTES", 2, 8, "QUATERNION");
+  const int accessor = gltf.append(
+      "accessors",
+      {{"bufferView", view}, {"componentType", kShort}, {"type", "VEC4"}, {"count", 2}, {"normalized", true}});
+  gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"ROTATION", accessor}};
+  const Scene scene = gltf.import();
+  ASSERT_EQ(scene.instances.size(), 2u);
+  const auto turned = [&](std::size_t i) { return glm::dvec3(scene.instances[i].world_from_local[0]); };  // (1, 0, 0)
+  EXPECT_LT(glm::length(turned(0) - turned_by(rotations.data())), 1e-3);
+  EXPECT_LT(glm::length(turned(1) - glm::dvec3(0, 1, 0)), 1e-3);
+}
+
 std::string meshopt_error(const std::function<void(Json&, GltfBuilder&)>& spoil) {
   GltfBuilder gltf = compressed_grid(false);
   spoil(gltf.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"], gltf);
@@ -194,6 +220,52 @@ TEST(Instancing, PlacesTheMeshOncePerElement) {
   EXPECT_LT(glm::length(moved(0) - glm::dvec3(102, 3, 3)), 1e-6);
   // (1,1,0): scaled (2,3,0), turned a quarter about z (-3,2,0), moved (1,7,6), and the node's own 100.
   EXPECT_LT(glm::length(moved(1) - glm::dvec3(101, 7, 6)), 1e-5);
+}
+
+TEST(Instancing, MirrorsCopiesWithFrontsCounterClockwiseInTheWorld) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", gltf.add_positions({0, 0, 0, 3, 0, 0})}, {"SCALE", gltf.add_positions({1, 1, 1, -1, 1, 1})}};
+  const pack::Contents pack = gltf.bake();
+  ASSERT_EQ(pack.instances.size(), 2u);
+  EXPECT_NE(pack.instances[0].mesh, pack.instances[1].mesh);
+  for (const pack::BatchInstance& draw : pack.batch_instances) {
+    const pack::Instance& instance = pack.instances[draw.instance];
+    glm::vec3 corner[3];
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      const auto& index = pack.indices[pack.batches[draw.batch].first_index + c];
+      const glm::vec4 local(pack.positions[index.vertex].position_ls, 1);
+      for (int row = 0; row < 3; ++row) corner[c][row] = glm::dot(instance.world_from_local[row], local);
+    }
+    // The front looks to where it looked: a mirror in x leaves +z.
+    EXPECT_GT(glm::cross(corner[1] - corner[0], corner[2] - corner[0]).z, 0.9f);
+  }
+}
+
+TEST(Instancing, MovesItsCopiesWithTheNodeAbove) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["nodes"][0]["translation"] = {0, 5, 0};
+  gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", gltf.add_positions({0, 0, 0, 3, 0, 0})}};
+  gltf.add_node({{"name", "arm"}, {"children", {0}}, {"translation", {100, 0, 0}}});
+  const Json animated = {{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}};
+  gltf.json["animations"] = {
+      {{"samplers",
+        {{{"input", gltf.add_floats({0, 1}, "SCALAR", 1)}, {"output", gltf.add_positions({100, 0, 0, 100, 0, 50})}}}},
+       {"channels", {animated}}}};
+  const pack::Contents pack = gltf.bake();
+  ASSERT_EQ(pack.instances.size(), 2u);
+  ASSERT_EQ(pack.nodes.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const pack::Instance& instance = pack.instances[i];
+    EXPECT_EQ(instance.dynamic, 1u);
+    EXPECT_EQ(text_of(pack, pack.nodes.at(instance.node).name), "triangle");
+    // node_world_now · inverse(node_world_rest) · world_from_local, all of them translations: now 50 along z.
+    const glm::vec3 rest(100, 5, 0), now(100, 5, 50);
+    glm::vec3 at;
+    for (int row = 0; row < 3; ++row) at[row] = instance.world_from_local[row].w;
+    EXPECT_EQ(now - rest + at, glm::vec3(100 + 3 * static_cast<float>(i), 5, 50));
+  }
 }
 
 TEST(Instancing, NeedsEqualCounts) {
@@ -275,6 +347,19 @@ TEST(TextureSource, IsLeftOutByNameWhereThereIsNoPlainImage) {
     EXPECT_NE(
         warnings.lines().back().find("has no PNG or JPEG image but only that of EXT_texture_webp and is left out"),
         std::string::npos);
+  }
+}
+
+TEST(TextureSource, OfEmissionThatIsLeftOutLeavesNoGlow) {
+  for (const Json& info : {Json{{"index", 0}}, Json{{"index", 1}, {"texCoord", 2}}, Json{{"index", 1}}}) {
+    GltfBuilder gltf = with_base_color({{"index", 1}}, {{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}});
+    gltf.append("textures", {{"source", 0}});
+    gltf.json["materials"][0]["emissiveTexture"] = info;
+    gltf.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
+    const bool kept = info == Json{{"index", 1}};
+    const Scene scene = gltf.import();
+    EXPECT_EQ(scene.materials.at(0).emissive, glm::vec3(kept ? 1.0f : 0.0f)) << info;
+    EXPECT_EQ(scene.materials.at(0).emissive_map.texture == kNone, !kept) << info;
   }
 }
 
