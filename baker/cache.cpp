@@ -12,6 +12,8 @@
 
 #include <algorithm>
 
+#include "threads.h"
+
 namespace chandelier::baker {
 namespace {
 
@@ -77,7 +79,7 @@ std::string CacheKey::name() const {
 Cache::Cache(const std::filesystem::path& folder) : folder_(folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
+  if (std::error_code ignored; !std::filesystem::is_directory(folder, ignored)) {
     fail(folder.string(), "cannot make the cache's folder (" + (error ? error.message() : "not a folder") + ")");
   }
   pack::remove_stale_files(folder);
@@ -93,7 +95,7 @@ std::unique_ptr<CacheEntry> Cache::load(const std::string& name) {
   std::string fault;
   if (std::error_code error; std::filesystem::exists(path_of(name), error)) {
     try {
-      entry = std::make_unique<CacheEntry>(CacheEntry{pack::File(path_of(name)), {}});
+      entry = std::make_unique<CacheEntry>(CacheEntry{pack::File(path_of(name), most_threads()), {}});
       fault = notes_fault(entry->pack, name, entry->notes);
     } catch (const pack::Error& damage) {
       fault = damage.what();
@@ -130,7 +132,7 @@ void Cache::store(const std::string& name, const pack::View& sections, const std
   view.strings = strings;
   try {
     // Not synced: the checksums tell what a power failure leaves of it.
-    pack::write(path_of(name), view, pack::Sync::no);
+    pack::write(path_of(name), view, pack::Sync::no, pack::Compression::off, most_threads());
   } catch (const pack::Error& error) {
     const std::lock_guard lock(mutex_);
     faults_[name] = std::string("cannot be kept: ") + error.what();

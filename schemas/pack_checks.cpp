@@ -140,8 +140,8 @@ std::string order_fault(const View& view) {
 
 }  // namespace
 
-std::string check(const View& view) {
-  if (std::string line = validate(view); !line.empty()) return line;
+std::string check(const View& view, std::size_t most_threads) {
+  if (std::string line = validate(view, most_threads); !line.empty()) return line;
   if (std::string line = bounds_fault("bounds_min_ws", view.bake_info->bounds_min_ws, view.bake_info->bounds_max_ws);
       !line.empty()) {
     return "bake_info" + line;
@@ -167,7 +167,7 @@ std::string check(const View& view) {
   if (view.triangle_bvh.size() + view.voxel_indices.size() < few_records) {
     for (std::size_t i = 0; i < faults.size(); ++i) apply(i);
   } else {
-    parallel_for(faults.size(), apply);
+    parallel_for(faults.size(), most_threads, apply);
   }
   const auto first = std::ranges::find_if(faults, [](const std::string& line) { return !line.empty(); });
   return first == faults.end() ? std::string() : *first;

@@ -18,8 +18,8 @@
 #include "stage_keys.h"
 #include "strings.h"
 #include "textures.h"
-#include "triangle_bvh.h"
 #include "threads.h"
+#include "triangle_bvh.h"
 
 namespace chandelier::baker {
 namespace {
@@ -48,7 +48,7 @@ std::uint64_t bytes_of(const std::vector<Records>&... sections) {
 /// Everything that neither lights nor image bytes touch: what a cache keeps from one bake to the next. Materials and
 /// nodes are there already.
 void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
-                   [[maybe_unused]] Warnings& warnings, Strings& strings, pack::Contents& pack) {
+                   Strings& strings, pack::Contents& pack) {
   const std::vector<MeshRecords> meshes = bake_meshes(scene, settings, report, pack);
   report.run("instances", [&](PassReport& pass) {
     make_instances(scene, meshes, strings, pack);
@@ -62,8 +62,8 @@ void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& p
 
 /// From the cache where it has it, else baked and kept.
 void find_or_bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
-                           Warnings& warnings, Cache& cache, Strings& strings, pack::Contents& pack) {
-  if (!cache.is_on()) return bake_geometry(scene, settings, progress, report, warnings, strings, pack);
+                           Cache& cache, Strings& strings, pack::Contents& pack) {
+  if (!cache.is_on()) return bake_geometry(scene, settings, progress, report, strings, pack);
   std::string entry;
   bool found = false;
   report.run("find_geometry", [&](PassReport&) {
@@ -71,9 +71,8 @@ void find_or_bake_geometry(Scene& scene, const BakeSettings& settings, const Pro
     found = load_geometry(cache, entry, report, strings, pack);
   });
   if (found) return;
-  const std::size_t first_pass = report.passes.size(), earlier_warnings = warnings.count();
-  bake_geometry(scene, settings, progress, report, warnings, strings, pack);
-  if (warnings.count() > earlier_warnings) return;  // not kept, so that they are said every time
+  const std::size_t first_pass = report.passes.size();
+  bake_geometry(scene, settings, progress, report, strings, pack);
   report.run("keep_geometry", [&](PassReport&) { store_geometry(cache, entry, report, first_pass, pack); });
 }
 
@@ -111,7 +110,7 @@ pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress&
                           pack.animation_values, pack.skins, pack.joints);
     pass.count("animations", static_cast<double>(pack.animations.size()));
   });
-  find_or_bake_geometry(scene, settings, progress, report, warnings, kept, strings, pack);
+  find_or_bake_geometry(scene, settings, progress, report, kept, strings, pack);
   report.run("images", [&](PassReport& pass) {
     make_images(scene, requests, settings.images, progress, kept, pass, strings, pack);
     pass.bytes = bytes_of(pack.images, pack.image_data);
