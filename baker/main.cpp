@@ -11,6 +11,8 @@
 #include <new>
 #include <optional>
 #include <set>
+#include <string>
+#include <string_view>
 
 #include "bake/bake.h"
 #include "depfile.h"
@@ -18,6 +20,7 @@
 #include "options.h"
 #include "pack_file.h"
 #include "report_json.h"
+#include "threads.h"
 
 namespace {
 
@@ -26,19 +29,50 @@ using namespace chandelier;
 using baker::Outcome;
 using Shown = baker::Progress::Shown;
 
+[[noreturn]] void fail_write(const std::string& where, int error) {
+  baker::fail(where, std::string("cannot write: ") + std::strerror(error));
+}
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    fail_write("standard output", errno);
+  }
+}
+
+/// Into a device, a pipe or a socket, which cannot be replaced by a file.
+void write_through(const std::filesystem::path& path, std::string_view text) {
+  std::FILE* file = std::fopen(path.c_str(), "we");
+  if (!file) fail_write(path.string(), errno);
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  const int error = errno;
+  std::fclose(file);
+  if (!written) fail_write(path.string(), error);
+}
+
+bool is_stream(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_other(std::filesystem::status(path, ignored));
+}
+
 void print_summary(const Outcome& outcome) {
   const auto triangles = static_cast<double>(outcome.triangles);
   const double mean = outcome.batches == 0 ? 0 : triangles / static_cast<double>(outcome.batches);
-  fmt::print("{} triangles ({} instanced), {} batches of {:.1f} on average, {} images, {} lights, {} bytes, {:.2f} s\n",
-             outcome.triangles, outcome.instanced_triangles, outcome.batches, mean, outcome.images, outcome.lights,
-             outcome.pack_bytes, outcome.seconds);
+  print(fmt::format(
+      "{} triangles ({} instanced), {} batches of {:.1f} on average, {} images, {} lights, {} bytes, {:.2f} s\n",
+      outcome.triangles, outcome.instanced_triangles, outcome.batches, mean, outcome.images, outcome.lights,
+      outcome.pack_bytes, outcome.seconds));
 }
 
 /// Before a bake that may take minutes: whether its results could be written.
 void check_output(const std::filesystem::path& output) {
   std::error_code error;
   const std::string folder = output.has_parent_path() ? output.parent_path().string() : ".";
-  if (std::filesystem::is_directory(output, error)) baker::fail(output.string(), "the output is a folder");
+  const std::filesystem::file_status status = std::filesystem::status(output, error);
+  if (status.type() == std::filesystem::file_type::none) {
+    baker::fail(output.string(), "cannot be an output: " + error.message());
+  }
+  if (is_directory(status)) baker::fail(output.string(), "the output is a folder");
+  if (is_other(status)) baker::fail(output.string(), "exists and is not a regular file");
   if (!std::filesystem::is_directory(folder, error)) {
     baker::fail(output.string(), "there is no such folder (" + folder + ")");
   }
@@ -74,11 +108,12 @@ Shown shown_progress(const baker::Options& options) {
   return isatty(STDERR_FILENO) ? Shown::rewritten : Shown::slow_passes;
 }
 
-/// All that is written besides stdout.
+/// All files that are written: not stdout, nor a device or pipe that takes the report.
 std::vector<std::filesystem::path> outputs_of(const baker::Options& options) {
   std::vector<std::filesystem::path> out = {options.output};
   for (const std::filesystem::path& path : {options.depfile, options.json}) {
-    if (!path.empty() && path != "-") out.push_back(path);
+    const bool streamed = path == options.json && (path == "-" || is_stream(path));
+    if (!path.empty() && !streamed) out.push_back(path);
   }
   return out;
 }
@@ -87,7 +122,10 @@ void check_outputs(const baker::Options& options) {
   std::set<std::filesystem::path> seen;
   for (const std::filesystem::path& output : outputs_of(options)) {
     check_output(output);
-    if (!seen.insert(std::filesystem::weakly_canonical(output)).second) {
+    std::error_code error;
+    const std::filesystem::path canonical = std::filesystem::weakly_canonical(output, error);
+    if (error) baker::fail(output.string(), "cannot be an output: " + error.message());
+    if (!seen.insert(canonical).second) {
       baker::fail(output.string(), "is named as two outputs");
     }
   }
@@ -108,21 +146,21 @@ pack::Contents make_pack(const baker::Options& options, const baker::Progress& p
       "scene", [&] { return baker::bake(std::move(scene), options.bake, progress, outcome.report, warnings, &cache); });
 }
 
-/// The check runs while the disk takes what was written. The depfile comes before the pack is in its place: with the
-/// new pack and the old depfile, a file that is newly read could change unnoticed.
-void write_pack(const baker::Options& options, const pack::Contents& pack, Outcome& outcome) {
-  std::optional<pack::Writer> writer;
-  outcome.report.run("write", [&](baker::PassReport&) {
-    writer.emplace(options.output, pack, options.compress ? pack::Compression::smallest : pack::Compression::off);
+/// Writes what commit() then puts in its place, and fills in `outcome`. The check runs while the disk takes what was
+/// written. The depfile comes before the pack is in its place: with the new pack and the old depfile, a file that is
+/// newly read could change unnoticed.
+void write_pack(const baker::Options& options, const pack::Contents& pack, std::optional<pack::Writer>& writer,
+                Outcome& outcome) {
+  outcome.report.run("write", [&](baker::PassReport& pass) {
+    const auto compression = options.compress ? pack::Compression::smallest : pack::Compression::off;
+    writer.emplace(options.output, pack, compression, baker::most_threads());
+    pass.bytes = outcome.pack_bytes = writer->size_bytes();
   });
-  with_memory_for("scene", [&] { baker::check(pack, outcome.report); });
+  baker::check(pack, outcome.report);
   if (!options.depfile.empty()) {
     pack::write_text(options.depfile, baker::depfile_text(options.output, outcome.files_read));
   }
-  outcome.report.run("sync", [&](baker::PassReport& pass) {
-    writer->commit();
-    pass.bytes = outcome.pack_bytes = std::filesystem::file_size(options.output);
-  });
+  outcome.report.run("sync", [&](baker::PassReport&) { writer->sync(); });
   outcome.triangles = pack.bake_info.unique_triangles;
   outcome.instanced_triangles = pack.bake_info.instanced_triangles;
   outcome.batches = pack.batches.size();
@@ -130,13 +168,20 @@ void write_pack(const baker::Options& options, const pack::Contents& pack, Outco
   outcome.lights = pack.lights.size();
 }
 
-void tell(const baker::Options& options, const Outcome& outcome) {
+/// Whatever is told comes before the pack is in its place, so that a bake that cannot tell leaves the older one. A
+/// report's file waits in `file`: it must not tell of a pack that could not be put in its place.
+void tell(const baker::Options& options, const Outcome& outcome, std::optional<pack::TemporaryFile>& file) {
   for (const std::string& line : outcome.warnings) fmt::print(stderr, "chandelier-bake: warning: {}\n", line);
-  if (options.json == "-") {
-    fmt::print("{}", baker::report_json(options, outcome));
-    return;
+  if (options.json == "-") return print(baker::report_json(options, outcome));
+  if (!options.json.empty()) {
+    const std::string report = baker::report_json(options, outcome);
+    if (is_stream(options.json)) {
+      write_through(options.json, report);
+    } else {
+      file.emplace(options.json).write(0, report.data(), report.size());
+      file->sync();
+    }
   }
-  if (!options.json.empty()) pack::write_text(options.json, baker::report_json(options, outcome));
   if (!options.quiet) print_summary(outcome);
 }
 
@@ -155,13 +200,17 @@ void run(const baker::Options& options) {
   baker::Warnings warnings;
   baker::Cache cache = options.cache.empty() ? baker::Cache() : baker::Cache(options.cache);
   const pack::Contents pack = make_pack(options, progress, warnings, cache, outcome);
-  write_pack(options, pack, outcome);
+  std::optional<pack::Writer> writer;
+  with_memory_for(options.output.string(), [&] { write_pack(options, pack, writer, outcome); });
   cache.warn(warnings);
   outcome.cache_loads = cache.loads();
   outcome.warnings = warnings.lines();
   outcome.seconds = progress.seconds();
   progress.clear();
-  tell(options, outcome);
+  std::optional<pack::TemporaryFile> report;
+  tell(options, outcome, report);
+  writer->commit();
+  if (report) report->commit(pack::Sync::yes);
 }
 
 }  // namespace

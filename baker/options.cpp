@@ -94,6 +94,11 @@ void add_voxel_options(CLI::App& app, VoxelSettings& voxels) {
       ->check(CLI::Validator(check_voxel_large, ""));
 }
 
+/// An empty one is a script's unset variable, not a wish to do without.
+std::string check_path(const std::string& text) {
+  return text.empty() ? "must be a path ('')" : "";
+}
+
 template <int Least, int Most>
 std::string check_whole_number(const std::string& text) {
   int value = 0;
@@ -127,10 +132,14 @@ void add_build_options(CLI::App& app, Options& options) {
   app.option_defaults()->group("Build step");
   app.add_option("--cache", options.cache,
                  "Folder that keeps what was baked, for bakes of the same files; made if need be")
-      ->type_name("DIR");
-  app.add_option("--depfile", options.depfile, "Write which files were read, for Ninja and Make")->type_name("FILE");
+      ->type_name("DIR")
+      ->check(CLI::Validator(check_path, ""));
+  app.add_option("--depfile", options.depfile, "Write which files were read, for Ninja and Make")
+      ->type_name("FILE")
+      ->check(CLI::Validator(check_path, ""));
   app.add_option("--json", options.json, "Write a report: times, counts and bytes of each pass, warnings; - is stdout")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(CLI::Validator(check_path, ""));
   app.add_option("-j,--threads", options.threads, "Threads; 0: all cores. The pack is the same for any number")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<0, 1024>, ""));
@@ -163,7 +172,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.add_option("-o,--output", options.output, "The pack to write, PACK.chandelier")->required();
   app.option_defaults()->group(kBakingGroup);
   app.add_option("--batch-triangles", options.bake.batch_triangles,
-                 "Most triangles in a batch, a multiple of 4 up to 512")
+                 "Most triangles in a batch, a multiple of 4, 4 to 512")
       ->capture_default_str()
       ->check(CLI::Validator(check_batch_triangles, ""));
   app.add_option("--range-threshold", options.bake.range_threshold_lx,
@@ -171,7 +180,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
       ->capture_default_str()
       ->check(CLI::Validator(check_range_threshold, ""));
   app.add_option("--position-error", options.bake.position_error_m,
-                 "Most that a vertex may be moved to store it in fewer bits, metres; 0 moves none")
+                 "Most that a vertex may be moved to store it in fewer bits, metres, 0 to 1; 0 moves none")
       ->capture_default_str()
       ->check(CLI::Validator(check_position_error, ""));
   app.add_option("--normal-bits", options.bake.normal_bits, "Bits of each of a normal's two numbers, 8 to 16")
@@ -193,6 +202,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   try {
     app.parse(argc, argv);
     options.settings = settings_of(app);
+    if (options.json == "/dev/stdout") options.json = "-";
     return options;
   } catch (const CLI::Success& answer) {  // --help, --version
     exit_code = app.exit(answer);

@@ -57,6 +57,34 @@ class Report(BakeTool):
 
     def test_a_failed_bake_writes_none(self):
         done = self.run_bake(self.folder / "gone.gltf", "-o", self.pack, "--json", "r.json", "--depfile", "d.d")
+    def test_a_device_or_a_pipe_may_take_it(self):
+        done = self.run_bake(*self.room(), "-o", self.pack, "--json", "/dev/null", "--quiet")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        done = self.run_bake(*self.room("again"), "-o", self.pack, "--json", "/dev/stdout")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["output"], str(self.pack))
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        reader = subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE, text=True)
+        done = self.run_bake(*self.room("third"), "-o", self.pack, "--json", pipe)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(reader.communicate()[0])["output"], str(self.pack))
+        self.assertTrue(pipe.is_fifo())
+
+    def test_what_cannot_be_told_fails_and_leaves_the_older_pack(self):
+        scene, rig = self.room()
+        self.pack.write_bytes(b"older")
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            for arguments, place in (((), "standard output"), (("--json", "-"), "standard output"),
+                                     (("--json", "/dev/full"), "/dev/full")):
+                with self.subTest(arguments=arguments):
+                    done = subprocess.run([BAKE, scene, rig, "-o", self.pack, *arguments], stdout=full,
+                                          stderr=subprocess.PIPE, text=True)
+                    self.assertEqual(done.returncode, 1)
+                    self.assertEqual(done.stderr, f"chandelier-bake: error: {place}: cannot write: No space left on device\n")
+                    self.assertEqual(self.pack.read_bytes(), b"older")
+        self.assertEqual([name for name in self.names(self.folder) if name.endswith(".tmp")], [])
+
         self.assertEqual(done.returncode, 1)
         self.assertEqual(self.names(self.folder), [])
 
@@ -65,6 +93,9 @@ class Report(BakeTool):
         for arguments, says in ((["--json", "no/such/r.json"], "there is no such folder"),
                                 (["--depfile", self.pack], "is named as two outputs"),
                                 (["--depfile", scene], "the output is one of the inputs"),
+                                (["--json", "x" * 300], "File name too long"),
+                                (["--depfile", "/dev/null"], "exists and is not a regular file"),
+                                (["--cache", "x" * 300], "cannot make the cache's folder (File name too long)"),
                                 (["--json", scene.parent / "room.bin"], "the output is one of the inputs")):
             with self.subTest(arguments=arguments):
                 before = scene.read_bytes()
@@ -77,11 +108,28 @@ class Report(BakeTool):
 
 class ProgressLines(BakeTool):
     def test_verbose_is_a_line_for_each_pass(self):
+class Usage(BakeTool):
+    def test_an_output_with_a_name_that_is_too_long(self):
+        scene, _ = self.room()
+        done = self.run_bake(scene, "-o", "x" * 300)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"^chandelier-bake: error: x+[^:\n]*: cannot be an output: File name too long\n$")
+
+    def test_an_empty_path_is_wrong_usage(self):
+        scene, _ = self.room()
+        for option in ("--cache", "--depfile", "--json"):
+            for arguments in ((option, ""), (f"{option}=",)):
+                done = self.run_bake(scene, "-o", self.pack, *arguments)
+                self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+                self.assertIn(option, done.stderr)
+                self.assertFalse(self.pack.exists())
+
+
         done = self.run_bake(*self.room(), "-o", self.pack, "--verbose")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = done.stderr.splitlines()
         self.assertRegex(lines[0], r"^chandelier-bake: \d+\.\d\d s: import took \d+\.\d\d s$")
-        self.assertRegex(lines[-1], r"^chandelier-bake: \d+\.\d\d s: write took \d+\.\d\d s$")
+        self.assertRegex(lines[-1], r"^chandelier-bake: \d+\.\d\d s: sync took \d+\.\d\d s$")
 
     def test_verbose_and_quiet_is_wrong_usage(self):
         self.assertEqual(self.run_bake(*self.room(), "-o", self.pack, "--verbose", "--quiet").returncode, 2)
