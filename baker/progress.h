@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdio>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -15,12 +16,13 @@ class Progress {
  public:
   enum class Shown {
     nothing,
-    slow_passes,  // a line after each pass that took more than a second
+    slow_passes,  // a line after each pass that took longer than patience
     all_passes,   // a line after each pass
     rewritten,    // one line of a terminal, which is never left behind
   };
 
-  explicit Progress(Shown shown);
+  /// Says nothing for the first `patience_s`, since nobody wonders yet.
+  explicit Progress(Shown shown, double patience_s = 1, std::FILE* out = stderr);
   explicit Progress(bool terminal) : Progress(terminal ? Shown::rewritten : Shown::nothing) {}
   ~Progress();
   Progress(const Progress&) = delete;
@@ -45,6 +47,8 @@ class Progress {
   void rewrite() const;  // with mutex_ held
 
   Shown shown_;
+  double patience_s_;
+  std::FILE* out_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   mutable std::mutex mutex_;
   mutable std::string what_;
