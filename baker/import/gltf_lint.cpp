@@ -62,6 +62,10 @@ void lint_accessors(const Lint& lint) {
       lint.say("accessors", i, "it has a byteOffset without a buffer view");
     if (accessor.contains("sparse") && whole(accessor["sparse"], "count", 0) > count)
       lint.say("accessors", i, "it has more sparse elements than elements");
+    for (const char* part : {"indices", "values"}) {
+      if (accessor.contains("sparse") && lint.view_of(accessor["sparse"][part]).contains("byteStride"))
+        lint.say("accessors", i, "its sparse elements have a byteStride");
+    }
     if (!accessor.contains("bufferView") || count == 0) return;
     const Json& view = lint.view_of(accessor);
     const std::uint64_t stride = whole(view, "byteStride", element), bytes = whole(view, "byteLength", 0);
