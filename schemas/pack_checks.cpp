@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -13,6 +12,7 @@
 #include "pack_checks_animation.h"
 #include "pack_checks_bvh.h"
 #include "pack_checks_lights.h"
+#include "pack_checks_text.h"
 #include "pack_checks_voxels.h"
 #include "parallel.h"
 
@@ -24,15 +24,6 @@ constexpr std::size_t few_records = 100000;
 
 /// How far from 1 the length of a direction may be, and from 0 the dot product of two that are perpendicular.
 constexpr float direction_tolerance = 1e-3f;
-
-std::string text(float value) {
-  char buffer[32];
-  return std::string(buffer, std::to_chars(buffer, buffer + sizeof(buffer), value).ptr);
-}
-
-std::string text(std::uint64_t value) {
-  return std::to_string(value);
-}
 
 float dot(const glm::vec3& a, const glm::vec3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -100,7 +91,7 @@ std::string fault(const Camera& camera) {
 template <typename Record>
 std::string first_fault(const char* section, std::span<const Record> records) {
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (std::string line = fault(records[i]); !line.empty()) return std::string(section) + "[" + text(i) + "]" + line;
+    if (std::string line = fault(records[i]); !line.empty()) return at(section, i) + line;
   }
   return {};
 }

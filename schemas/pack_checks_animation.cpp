@@ -8,14 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "pack_checks_text.h"
+
 namespace chandelier::pack {
 namespace {
 
 constexpr float unit_tolerance = 1e-3f;
-
-std::string at(const char* section, std::size_t i) {
-  return std::string(section) + "[" + std::to_string(i) + "]";
-}
 
 std::string node_fault(const View& view) {
   for (std::size_t i = 0; i < view.nodes.size(); ++i) {

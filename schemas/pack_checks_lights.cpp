@@ -6,12 +6,10 @@
 #include <cmath>
 #include <vector>
 
+#include "pack_checks_text.h"
+
 namespace chandelier::pack {
 namespace {
-
-std::string at(const char* section, std::size_t i, const std::string& what) {
-  return std::string(section) + "[" + std::to_string(i) + "]" + what;
-}
 
 /// The light itself is in its bounds, as what it lights begins there; only rounding may put it outside.
 bool holds_its_light(const Light& light) {
@@ -28,9 +26,9 @@ std::string bounds_fault(const View& view) {
   for (std::size_t i = 0; i < view.lights.size(); ++i) {
     const Light& light = view.lights[i];
     if (light.type != LightType::directional) {
-      if (!holds_its_light(light)) return at("lights", i, ".bounds_center_ws: the light is not in its bounds");
+      if (!holds_its_light(light)) return at("lights", i) + ".bounds_center_ws: the light is not in its bounds";
     } else if (light.voxel != none) {
-      return at("lights", i, ".voxel: a directional light has none");
+      return at("lights", i) + ".voxel: a directional light has none";
     }
   }
   return {};
@@ -49,9 +47,8 @@ std::string bvh_fault(const View& view) {
     const bool is_leaf = node.light != none;
     const std::size_t least = is_leaf ? i + 1 : i + 2, most = is_leaf ? i + 1 : ends.back();
     if (node.miss < least || node.miss > most) {
-      return at("light_bvh", i,
-                ".miss: " + std::to_string(node.miss) + " is not from " + std::to_string(least) + " to " +
-                    std::to_string(most));
+      return at("light_bvh", i) + ".miss: " + std::to_string(node.miss) + " is not from " + std::to_string(least) +
+             " to " + std::to_string(most);
     }
     if (!is_leaf) {
       ends.push_back(node.miss);
@@ -59,9 +56,9 @@ std::string bvh_fault(const View& view) {
     }
     ++leaves;
     if (view.lights[node.light].type == LightType::directional) {
-      return at("light_bvh", i, ".light: " + std::to_string(node.light) + " is a directional light");
+      return at("light_bvh", i) + ".light: " + std::to_string(node.light) + " is a directional light";
     }
-    if (seen[node.light]) return at("light_bvh", i, ".light: " + std::to_string(node.light) + " has a leaf already");
+    if (seen[node.light]) return at("light_bvh", i) + ".light: " + std::to_string(node.light) + " has a leaf already";
     seen[node.light] = true;
   }
   const auto directional = std::count_if(view.lights.begin(), view.lights.end(),

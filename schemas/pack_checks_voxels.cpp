@@ -3,24 +3,12 @@
 #include "pack_checks_voxels.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+
+#include "pack_checks_text.h"
 
 namespace chandelier::pack {
 namespace {
-
-std::string text(std::uint64_t value) {
-  return std::to_string(value);
-}
-
-std::string text(float value) {
-  char buffer[32];
-  return std::string(buffer, std::to_chars(buffer, buffer + sizeof(buffer), value).ptr);
-}
-
-std::string at(const char* section, std::size_t i) {
-  return std::string(section) + "[" + text(i) + "]";
-}
 
 std::string no_grid_fault(const View& view) {
   const auto fault = [](const char* section, std::size_t count) {

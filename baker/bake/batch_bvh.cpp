@@ -5,13 +5,10 @@
 #include <glm/glm.hpp>
 
 #include "bvh.h"
+#include "is_static.h"
 
 namespace chandelier::baker {
 namespace {
-
-bool is_static(const pack::Contents& pack, const pack::BatchInstance& draw) {
-  return pack.instances[draw.instance].dynamic == 0;
-}
 
 /// Boxes of all static instances that draw anything, in their order.
 std::vector<BvhItem> instance_items(const pack::Contents& pack) {

@@ -11,6 +11,7 @@
 
 #include "../error.h"
 #include "clip.h"
+#include "is_static.h"
 #include "voxel_grid.h"
 #include "voxel_pieces.h"
 
@@ -18,10 +19,6 @@ namespace chandelier::baker {
 namespace {
 
 constexpr std::size_t kBlock = 64;  // batch instances: some thousand triangles
-
-bool is_static(const pack::Contents& pack, const pack::BatchInstance& record) {
-  return pack.instances[record.instance].dynamic == 0;
-}
 
 /// The grid around the static batch instances; none where there are none.
 std::vector<pack::VoxelGrid> grid_of(const VoxelSettings& settings, const pack::Contents& pack) {

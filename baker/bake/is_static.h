@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which batch instances the structures over what stands still are made of.
+#pragma once
+
+#include "pack_schema.h"
+
+namespace chandelier::baker {
+
+inline bool is_static(const pack::Contents& pack, const pack::BatchInstance& draw) {
+  return pack.instances[draw.instance].dynamic == 0;
+}
+
+}  // namespace chandelier::baker
