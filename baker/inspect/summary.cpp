@@ -104,7 +104,9 @@ Summary summarize(const pack::File& file) {
   }
   summary.batch_triangles = triangles.spread();
   for (const pack::BatchInstance& draw : view.batch_instances) {
-    summary.drawn_triangles += view.batches[draw.batch].index_count / 3;
+    const std::uint64_t drawn = view.batches[draw.batch].index_count / 3;
+    summary.drawn_triangles += drawn;
+    if (view.instances[draw.instance].dynamic == 0) summary.static_triangles += drawn;
   }
   for (const pack::Material& material : view.materials) {
     summary.masked_materials += material.alpha_mode == pack::AlphaMode::mask;

@@ -69,18 +69,18 @@ void put_geometry(Out out, const pack::View& view, const Summary& summary) {
 
 void put_structures(Out out, const pack::View& view, const Summary& summary) {
   const auto put_bvh = [&](const char* name, const Hierarchy& bvh, const char* more) {
-    if (bvh.nodes > 0) fmt::format_to(out, "{:<11}{} nodes, {} deep{}\n", name, bvh.nodes, bvh.depth, more);
+    if (bvh.nodes > 0) fmt::format_to(out, "{:<13}{} nodes, {} deep{}\n", name, bvh.nodes, bvh.depth, more);
   };
   put_bvh("batch BVH", summary.batch_bvh, "");
-  put_bvh("inst. BVH", summary.instance_bvh, "");
-  put_bvh("tri. BVH", summary.triangle_bvh, " at most, one for each mesh");
+  put_bvh("instance BVH", summary.instance_bvh, "");
+  put_bvh("triangle BVH", summary.triangle_bvh, " at most, one for each mesh");
   put_bvh("light BVH", summary.light_bvh, "");
   for (const pack::VoxelGrid& grid : view.voxel_grid) {
-    fmt::format_to(out, "voxels     {} x {} x {}, {}; {} ({}) occupied; {} of {} triangles ({}) not culled\n",
+    fmt::format_to(out, "voxels     {} x {} x {}, {}; {} ({}) occupied; {} of {} static triangles ({}) always drawn\n",
                    grid.resolution[0], grid.resolution[1], grid.resolution[2], name_of(grid.mode),
                    summary.voxels.occupied, share(summary.voxels.occupied, view.voxel_cells.size()),
-                   summary.voxels.no_cull_triangles, summary.voxels.triangles,
-                   share(summary.voxels.no_cull_triangles, summary.voxels.triangles));
+                   summary.voxels.no_cull_triangles, summary.static_triangles,
+                   share(summary.voxels.no_cull_triangles, summary.static_triangles));
   }
   if (!view.nodes.empty()) {
     fmt::format_to(out, "motion     {} nodes, {} animations, {} skins; {} of {} instances move, {} by a skin\n",
@@ -92,8 +92,9 @@ void put_structures(Out out, const pack::View& view, const Summary& summary) {
 /// Each animation with its length.
 void put_animations(Out out, const pack::File& file) {
   for (const pack::Animation& animation : file.view().animations) {
-    fmt::format_to(out, "  {:>8.3g} s, {} channels  {}\n", animation.duration_s, animation.channel_count,
-                   printable(file.text(animation.name)));
+    const std::string name = printable(file.text(animation.name));
+    fmt::format_to(out, "  {:>8.3g} s, {} channel{}{}{}\n", animation.duration_s, animation.channel_count,
+                   animation.channel_count == 1 ? "" : "s", name.empty() ? "" : "  ", name);
   }
 }
 

@@ -54,9 +54,9 @@ class PackInspect(unittest.TestCase):
         self.assertEqual((run.returncode, run.stderr), (0, ""))
         for part in ("positions                      7      12              84              84  raw", "3 stored, 5 drawn by 3 instances",
                      "3: 1 point, 1 spot, 1 directional; 1 dynamic, 1 unclustered",
-                     "3 nodes, 2 deep", "1 x 1 x 2, clip; 2 (100.0 %) occupied; 0 of 8 triangles (0.0 %) not culled",
+                     "3 nodes, 2 deep", "1 x 1 x 2, clip; 2 (100.0 %) occupied; 0 of 4 static triangles (0.0 %) always drawn",
                      "0 (0.0 %) closed", "2 nodes, 1 animations, 1 skins; 1 of 3 instances move, 1 by a skin",
-                     "3 channels  wave", "1 authored, 1 derived at 0.05 lx", "bricks.png", "eye"):
+                     "3 channels  wave\n", "instance BVH", "triangle BVH", "1 authored, 1 derived at 0.05 lx", "bricks.png", "eye"):
             self.assertIn(part, run.stdout)
         self.assertNotIn("torch", run.stdout)
 
