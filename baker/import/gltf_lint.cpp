@@ -191,13 +191,13 @@ void lint_skins(const Lint& lint) {
 
 /// Empty arrays, and extensions that extensionsUsed does not name; what extras and extensions hold is their own affair.
 void lint_tree(const Lint& lint, const Json& value, const std::set<std::string>& declared) {
-  if (value.is_array() && value.empty()) lint.warnings.add(lint.file, "glTF", "against glTF: an array is empty");
+  if (value.is_array() && value.empty()) lint.warnings.add(lint.file, "glTF", "breaks glTF: an array is empty");
   if (!value.is_object() && !value.is_array()) return;
   for (const auto& [key, each] : value.items()) {
     if (value.is_object() && key == "extensions" && each.is_object()) {
       for (const auto& [name, data] : each.items()) {
         if (!declared.contains(name))
-          lint.warnings.add(lint.file, "glTF", "against glTF: extensionsUsed does not name an extension", name);
+          lint.warnings.add(lint.file, "glTF", "breaks glTF: extensionsUsed does not name an extension", name);
       }
     }
     if (!value.is_object() || !is_one_of(key, {"extensions", "extras"})) lint_tree(lint, each, declared);
@@ -240,7 +240,7 @@ void lint_gltf(const Json& json, const std::string& file, Warnings& warnings) {
   const auto used = json.find("extensionsUsed");
   if (used != json.end()) declared.insert(used->begin(), used->end());
   if (used != json.end() && declared.size() < used->size()) {
-    warnings.add(file, "extensionsUsed", "against glTF: it names an extension twice");
+    warnings.add(file, "extensionsUsed", "breaks glTF: it names an extension twice");
   }
   if (json["asset"].value("minVersion", "2.0") != "2.0") {
     warnings.add(file, "asset", "asks for a later glTF than 2.0, which is all that is read");

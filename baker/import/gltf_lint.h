@@ -16,7 +16,7 @@ struct Lint {
   Warnings& warnings;
 
   void say(const char* section, std::size_t index, const std::string& what) const {
-    warnings.add(file, place(json, section, index), "against glTF: " + what);
+    warnings.add(file, place(json, section, index), "breaks glTF: " + what);
   }
   const Json& entry(const char* section, std::size_t index) const { return json[section][index]; }
   /// The buffer view of an accessor, or an empty object.

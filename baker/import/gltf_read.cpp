@@ -270,7 +270,7 @@ Gltf read_gltf(const std::filesystem::path& path, Warnings& warnings) {
   const Chunks chunks = split_container(gltf.container.bytes, gltf.file, warnings);
   if (chunks.json.empty()) fail(gltf.file, "is not a glTF: it is empty");
   gltf.json = parse_json(chunks.json, gltf.file);
-  if (chunks.json[0] == 0xEF) warnings.add(gltf.file, "JSON", "against glTF: it begins with a byte order mark");
+  if (chunks.json[0] == 0xEF) warnings.add(gltf.file, "JSON", "breaks glTF: it begins with a byte order mark");
   if (!gltf.json.is_object()) fail(gltf.file, "is not a glTF: the JSON is not an object");
   make_integers(gltf.json);
   check_extensions(gltf.json, gltf.file, warnings);
