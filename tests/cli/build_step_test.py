@@ -9,7 +9,9 @@ import time
 
 import jsonschema
 
-from bake_tool import BAKE, SOURCE, BakeTool, main
+from bake_tool import BAKE, INSPECT, SOURCE, BakeTool, main
+
+EVERYTHING = SOURCE / "tests" / "fuzz" / "corpus" / "import" / "everything.gltf"
 
 
 class Report(BakeTool):
@@ -55,8 +57,6 @@ class Report(BakeTool):
         self.assertEqual(len(report["warnings"]), 1)
         self.assertIn("KHR_nothing_at_all", report["warnings"][0])
 
-    def test_a_failed_bake_writes_none(self):
-        done = self.run_bake(self.folder / "gone.gltf", "-o", self.pack, "--json", "r.json", "--depfile", "d.d")
     def test_a_device_or_a_pipe_may_take_it(self):
         done = self.run_bake(*self.room(), "-o", self.pack, "--json", "/dev/null", "--quiet")
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
@@ -85,17 +85,19 @@ class Report(BakeTool):
                     self.assertEqual(self.pack.read_bytes(), b"older")
         self.assertEqual([name for name in self.names(self.folder) if name.endswith(".tmp")], [])
 
+    def test_a_failed_bake_writes_none(self):
+        done = self.run_bake(self.folder / "gone.gltf", "-o", self.pack, "--json", "r.json", "--depfile", "d.d")
         self.assertEqual(done.returncode, 1)
         self.assertEqual(self.names(self.folder), [])
 
     def test_outputs_are_checked_before_the_bake(self):
         scene, _ = self.room()
         for arguments, says in ((["--json", "no/such/r.json"], "there is no such folder"),
-                                (["--depfile", self.pack], "is named as two outputs"),
-                                (["--depfile", scene], "the output is one of the inputs"),
                                 (["--json", "x" * 300], "File name too long"),
                                 (["--depfile", "/dev/null"], "exists and is not a regular file"),
                                 (["--cache", "x" * 300], "cannot make the cache's folder (File name too long)"),
+                                (["--depfile", self.pack], "is named as two outputs"),
+                                (["--depfile", scene], "the output is one of the inputs"),
                                 (["--json", scene.parent / "room.bin"], "the output is one of the inputs")):
             with self.subTest(arguments=arguments):
                 before = scene.read_bytes()
@@ -106,8 +108,6 @@ class Report(BakeTool):
                 self.assertEqual(scene.read_bytes(), before)
 
 
-class ProgressLines(BakeTool):
-    def test_verbose_is_a_line_for_each_pass(self):
 class Usage(BakeTool):
     def test_an_output_with_a_name_that_is_too_long(self):
         scene, _ = self.room()
@@ -125,6 +125,8 @@ class Usage(BakeTool):
                 self.assertFalse(self.pack.exists())
 
 
+class ProgressLines(BakeTool):
+    def test_verbose_is_a_line_for_each_pass(self):
         done = self.run_bake(*self.room(), "-o", self.pack, "--verbose")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = done.stderr.splitlines()
@@ -152,6 +154,7 @@ class Usage(BakeTool):
 
 class SameBytes(BakeTool):
     def assert_same_bytes(self, *inputs):
+        """`inputs`: files and options."""
         first, _ = self.bake(*inputs, "--threads", "1")
         for threads in ("1", "2", "4", "0"):
             again, report = self.bake(*inputs, "--threads", threads)
@@ -164,8 +167,53 @@ class SameBytes(BakeTool):
             with self.subTest(name=name):
                 self.assert_same_bytes(self.example(name))
 
+    def test_mirrored_and_animated(self):
+        self.assert_same_bytes(EVERYTHING)
+
+    def test_compressed(self):
+        self.assert_same_bytes(self.example("restaurant"), "--compress")
+        self.assert_same_bytes(EVERYTHING, "--compress")
+
+    def test_clipped_to_voxels(self):
+        self.assert_same_bytes(self.example("restaurant"), "--voxel-large", "clip")
+        self.assert_same_bytes(EVERYTHING, "--voxel-large", "clip")
+
     def test_classroom(self):
         self.assert_same_bytes(self.data("scenes/classroom/classroom.gltf"))
+
+
+class Options(BakeTool):
+    def inspect(self):
+        done = subprocess.run([INSPECT, self.pack, "--json"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_compress_keeps_all_in_fewer_bytes(self):
+        scene = self.example("restaurant")
+        raw, _ = self.bake(scene)
+        plain = self.inspect()
+        small, report = self.bake(scene, "--compress")
+        packed = self.inspect()
+        self.assertEqual(report["settings"]["compress"], "true")
+        self.assertLess(len(small) * 2, len(raw))
+        self.assertEqual({each["codec"] for each in plain["sections"]}, {"raw"})
+        self.assertLess({"columns", "zstd"}, {each["codec"] for each in packed["sections"]} | {"triangles", "raw"})
+        for report in (plain, packed):
+            del report["size_bytes"]
+            for section in report["sections"]:
+                del section["stored_bytes"], section["codec"]
+        self.assertEqual(packed, plain)
+
+    def test_voxel_large_clip_draws_nothing_always(self):
+        scene = self.example("restaurant")
+        self.bake(scene)
+        separate = self.inspect()["voxels"]
+        self.bake(scene, "--voxel-large", "clip")
+        clip = self.inspect()["voxels"]
+        self.assertEqual((separate["mode"], clip["mode"]), ("separate", "clip"))
+        self.assertGreater(separate["no_cull_triangles"], 0)
+        self.assertEqual(clip["no_cull_triangles"], 0)
+        self.assertGreater(clip["occupied"], separate["occupied"])
 
 
 class Depfile(BakeTool):
