@@ -60,9 +60,16 @@ std::string channel_fault(const View& view) {
   return {};
 }
 
+/// Animations share no channels, so that each channel is looked at once.
 std::string duration_fault(const View& view) {
+  std::size_t next_channel = 0;
   for (std::size_t i = 0; i < view.animations.size(); ++i) {
     const Animation& animation = view.animations[i];
+    if (animation.first_channel != next_channel) {
+      return at("animations", i) + ".first_channel: " + std::to_string(animation.first_channel) +
+             " where those before it end at " + std::to_string(next_channel);
+    }
+    next_channel += animation.channel_count;
     for (std::size_t c = 0; c < animation.channel_count; ++c) {
       const AnimationChannel& channel = view.animation_channels[animation.first_channel + c];
       const float last = view.animation_times[channel.first_key + channel.key_count - 1].time_s;

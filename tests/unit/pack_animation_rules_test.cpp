@@ -83,6 +83,8 @@ const Breach breaches[] = {
      "animation_channels[1].value_count: 6 where its keys have 18"},
     {"EqualTimes", [](Contents& c) { c.animation_times[1].time_s = 2; },
      "animation_times[2].time_s: does not ascend in animation_channels[0]"},
+    {"SharedChannels", [](Contents& c) { c.animations.push_back(c.animations[0]); },
+     "animations[1].first_channel: 0 where those before it end at 2"},
     {"Duration", [](Contents& c) { c.animations[0].duration_s = 1; },
      "animations[0].duration_s: ends before animation_channels[0] does"},
     {"Weights", [](Contents& c) { c.skin_vertices[3].weights[1] = 1; },
