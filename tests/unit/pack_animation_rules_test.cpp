@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <random>
 #include <string>
 
+#include "pack_breach.h"
 #include "pack_checks_animation.h"
-#include "pack_sample.h"
 
 namespace chandelier::pack::test {
 namespace {
@@ -58,16 +57,6 @@ Contents moving_sample() {
   return c;
 }
 
-struct Breach {
-  const char* name;
-  std::function<void(Contents&)> commit;
-  const char* error;
-};
-
-void PrintTo(const Breach& breach, std::ostream* out) {
-  *out << breach.name;
-}
-
 const Breach breaches[] = {
     {"ParentAfterChild", [](Contents& c) { c.nodes[0].parent = 1; },
      "nodes[0].parent: 1 does not come before its child"},
@@ -109,8 +98,7 @@ TEST_P(PackAnimationRules, BreachIsNamed) {
   EXPECT_EQ(animation_fault(view_of(contents)), GetParam().error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, PackAnimationRules, testing::ValuesIn(breaches),
-                         [](const auto& each) { return each.param.name; });
+INSTANTIATE_TEST_SUITE_P(Each, PackAnimationRules, testing::ValuesIn(breaches), name_of_breach);
 
 TEST(PackAnimation, IsRightAsItIs) {
   EXPECT_EQ(animation_fault(view_of(moving_sample())), "");

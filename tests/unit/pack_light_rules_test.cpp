@@ -2,23 +2,10 @@
 // Lights and light hierarchies that break a rule: opening names the record. No file may send a traversal in circles.
 #include <gtest/gtest.h>
 
-#include <functional>
-
-#include "pack_checks.h"
-#include "pack_sample.h"
+#include "pack_breach.h"
 
 namespace chandelier::pack::test {
 namespace {
-
-struct Breach {
-  const char* name;
-  std::function<void(Contents&)> commit;
-  const char* error;
-};
-
-void PrintTo(const Breach& breach, std::ostream* out) {
-  *out << breach.name;
-}
 
 // The sample: lights 0 (point), 1 (spot), 2 (directional); nodes 0 (inner), 1 (light 0), 2 (light 1).
 const Breach breaches[] = {
@@ -54,16 +41,10 @@ const Breach breaches[] = {
 class PackLightRules : public testing::TestWithParam<Breach> {};
 
 TEST_P(PackLightRules, BreachIsNamed) {
-  const Folder folder;
-  Contents contents = sample();
-  GetParam().commit(contents);
-  write(folder / "a.pack", contents);
-  EXPECT_EQ(open_error(folder / "a.pack"), GetParam().error);
-  EXPECT_EQ(check(view_of(contents)), GetParam().error);
+  expect_named(GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, PackLightRules, testing::ValuesIn(breaches),
-                         [](const auto& each) { return each.param.name; });
+INSTANTIATE_TEST_SUITE_P(Each, PackLightRules, testing::ValuesIn(breaches), name_of_breach);
 
 // A subtree that reaches past the one that it is in would skip nodes of another: ((0 1) 2) with a wrong inner node.
 TEST(PackLightRulesNesting, ASubtreeEndsWithinItsParents) {

@@ -3,24 +3,12 @@
 // schema; here is every kind of rule with its exact words, and the rules between fields.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 
-#include "pack_checks.h"
-#include "pack_sample.h"
+#include "pack_breach.h"
 
 namespace chandelier::pack::test {
 namespace {
-
-struct Breach {
-  const char* name;
-  std::function<void(Contents&)> commit;
-  const char* error;
-};
-
-void PrintTo(const Breach& breach, std::ostream* out) {
-  *out << breach.name;
-}
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float inf = std::numeric_limits<float>::infinity();
@@ -126,16 +114,10 @@ const Breach breaches[] = {
 class PackRules : public testing::TestWithParam<Breach> {};
 
 TEST_P(PackRules, BreachIsNamed) {
-  const Folder folder;
-  Contents contents = sample();
-  GetParam().commit(contents);
-  write(folder / "a.pack", contents);
-  EXPECT_EQ(open_error(folder / "a.pack"), GetParam().error);
-  EXPECT_EQ(check(view_of(contents)), GetParam().error);
+  expect_named(GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, PackRules, testing::ValuesIn(breaches),
-                         [](const auto& each) { return each.param.name; });
+INSTANTIATE_TEST_SUITE_P(Each, PackRules, testing::ValuesIn(breaches), name_of_breach);
 
 TEST(PackRulesLimits, AreAllowed) {
   const Folder folder;

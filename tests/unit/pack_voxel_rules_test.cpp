@@ -3,24 +3,12 @@
 // kinds.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 
-#include "pack_checks.h"
-#include "pack_sample.h"
+#include "pack_breach.h"
 
 namespace chandelier::pack::test {
 namespace {
-
-struct Breach {
-  const char* name;
-  std::function<void(Contents&)> commit;
-  const char* error;
-};
-
-void PrintTo(const Breach& breach, std::ostream* out) {
-  *out << breach.name;
-}
 
 /// Without a grid, and with nothing else that needs one.
 void drop_grid(Contents& c) {
@@ -119,8 +107,7 @@ TEST_P(PackVoxelRules, BreachIsNamed) {
   EXPECT_EQ(check(view_of(contents)), expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, PackVoxelRules, testing::ValuesIn(breaches),
-                         [](const auto& each) { return each.param.name; });
+INSTANTIATE_TEST_SUITE_P(Each, PackVoxelRules, testing::ValuesIn(breaches), name_of_breach);
 
 TEST(PackVoxels, MayBeAbsent) {
   Contents contents = sample();
