@@ -9,7 +9,7 @@ import time
 
 import jsonschema
 
-from bake_tool import BAKE, INSPECT, SOURCE, BakeTool, main
+from bake_tool import BAKE, INSPECT, SOURCE, BakeTool, main, without_slow_passes
 
 EVERYTHING = SOURCE / "tests" / "fuzz" / "corpus" / "import" / "everything.gltf"
 
@@ -78,8 +78,8 @@ class Report(BakeTool):
             for arguments, place in (((), "standard output"), (("--json", "-"), "standard output"),
                                      (("--json", "/dev/full"), "/dev/full")):
                 with self.subTest(arguments=arguments):
-                    done = subprocess.run([BAKE, scene, rig, "-o", self.pack, *arguments], stdout=full,
-                                          stderr=subprocess.PIPE, text=True)
+                    done = without_slow_passes(subprocess.run([BAKE, scene, rig, "-o", self.pack, *arguments], stdout=full,
+                                                              stderr=subprocess.PIPE, text=True))
                     self.assertEqual(done.returncode, 1)
                     self.assertEqual(done.stderr, f"chandelier-bake: error: {place}: cannot write: No space left on device\n")
                     self.assertEqual(self.pack.read_bytes(), b"older")
@@ -138,7 +138,10 @@ class ProgressLines(BakeTool):
 
     def test_a_terminal_is_left_clean(self):
         """Whatever was rewritten there, the last thing is the end of a line that was erased."""
-        master, slave = os.openpty()
+        try:
+            master, slave = os.openpty()
+        except OSError as error:
+            self.skipTest(f"no terminal to be had ({error})")
         done = subprocess.run([BAKE, *self.room(), "-o", self.pack], stdout=subprocess.PIPE, stderr=slave, cwd=self.folder)
         os.close(slave)
         os.set_blocking(master, False)
