@@ -11,6 +11,7 @@ Both sides run in turns on the same file and cores; times are medians of whole p
 import argparse
 import json
 import os
+import resource
 import shutil
 import statistics
 import struct
@@ -112,6 +113,9 @@ class Bench:
                      f"{(self.folder / 'out.chandelier').stat().st_size / 2**20:.0f} MiB and waiting for the disk, "
                      f"where gltfpack writes {(self.folder / 'out.glb').stat().st_size / 2**20:.0f}")
             row |= {"gltfpack_s": wall2, "gltfpack_cpu_s": cpu2, "gltfpack_mib": memory2}
+        own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        if memory < own * 1.05:
+            self.say(f"  memory: less than this; a process starts with the peak of the one that starts it, here {own:.0f} MiB")
         slowest = sorted(row["passes_ms"].items(), key=lambda p: -p[1])
         self.say("  ms per pass: " + ", ".join(f"{n} {ms:.0f}" for n, ms in slowest if ms >= 0.5))
         return row
