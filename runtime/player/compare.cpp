@@ -8,9 +8,13 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <stdexcept>
 
 #include "player/image_files.h"
+#include "player/metrics/color_maps.h"
+#include "player/metrics/flip.h"
+#include "player/metrics/ssim.h"
 #include "player/report.h"
 
 namespace chandelier::player {
@@ -35,16 +39,6 @@ void draw_in_turns(Renderer& renderer, uint32_t frames, Side& a, Side& b) {
     b.frames.push_back(renderer.draw(b.settings));
   }
   b.picture = renderer.read_back();
-}
-
-std::vector<uint8_t> heat_map(std::span<const float> values, float scale) {
-  std::vector<uint8_t> rgb;
-  rgb.reserve(values.size() * 3);
-  for (const float value : values) {
-    const auto color = heat_color(value / scale);
-    rgb.insert(rgb.end(), color.begin(), color.end());
-  }
-  return rgb;
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -80,7 +74,7 @@ void write_side(const std::filesystem::path& folder, const Run& run, const Pictu
 
 }  // namespace
 
-Differences differences(const Picture& a, const Picture& b) {
+Differences differences(const Picture& a, const Picture& b, std::span<const float> flip) {
   if (a.width != b.width || a.height != b.height) throw std::invalid_argument("pictures of different sizes");
   const std::size_t pixels = std::size_t{a.width} * a.height;
   Differences result;
@@ -96,6 +90,8 @@ Differences differences(const Picture& a, const Picture& b) {
   const double samples = 3.0 * static_cast<double>(pixels);
   result.rmse_linear = std::sqrt(result.rmse_linear / samples);
   result.rmse_shown = std::sqrt(result.rmse_shown / samples);
+  result.ssim = ssim(a, b);
+  result.flip = std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(pixels);
   return result;
 }
 
@@ -118,24 +114,14 @@ float heat_scale(std::vector<float> values) {
   return largest > 0.0f ? largest : 1.0f / 255.0f;
 }
 
-std::array<uint8_t, 3> heat_color(float t) {
-  static constexpr std::array<std::array<float, 3>, 5> kStops{
-      {{0, 0, 90}, {0, 60, 200}, {0, 220, 255}, {255, 230, 0}, {255, 0, 0}}};
-  const float at = std::clamp(t, 0.0f, 1.0f) * (kStops.size() - 1);
-  const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(at), kStops.size() - 2);
-  const float part = at - static_cast<float>(i);
-  std::array<uint8_t, 3> color{};
-  for (std::size_t c = 0; c < 3; ++c)
-    color[c] = static_cast<uint8_t>(std::lround(kStops[i][c] + part * (kStops[i + 1][c] - kStops[i][c])));
-  return color;
-}
-
 nlohmann::ordered_json to_json(const Comparison& comparison) {
   const Differences& d = comparison.differences;
   return {{"a", to_json(comparison.a)},
           {"b", to_json(comparison.b)},
           {"rmse", {{"linear", d.rmse_linear}, {"shown", d.rmse_shown}}},
           {"max_error", {{"linear", d.max_linear}, {"shown", d.max_shown}}},
+          {"ssim", d.ssim ? nlohmann::ordered_json(*d.ssim) : nlohmann::ordered_json()},
+          {"flip", {{"mean", d.flip}, {"image", comparison.flip_image}, {"pixels_per_degree", kFlipPixelsPerDegree}}},
           {"difference", {{"image", comparison.difference_image}, {"scale_shown", comparison.heat_scale}}}};
 }
 
@@ -150,7 +136,9 @@ void run_comparison(const Options& options, const NamedCamera& camera, const gpu
   Comparison comparison;
   comparison.a = side_run(options, camera, device, a, 0);
   comparison.b = side_run(options, camera, device, b, 1);
-  comparison.differences = differences(a.picture, b.picture);
+  const std::vector<float> flip = flip_map(a.picture, b.picture);
+  comparison.differences = differences(a.picture, b.picture, flip);
+  comparison.flip_image = "flip.png";
   comparison.difference_image = "difference.png";
   const std::vector<float> values = shown_differences(a.picture, b.picture);
   comparison.heat_scale = heat_scale(values);
@@ -158,13 +146,17 @@ void run_comparison(const Options& options, const NamedCamera& camera, const gpu
   write_side(options.report, comparison.a, a.picture);
   write_side(options.report, comparison.b, b.picture);
   write_png(options.report / comparison.difference_image, a.picture.width, a.picture.height,
-            heat_map(values, comparison.heat_scale));
+            colored(values, comparison.heat_scale, heat_color));
+  write_png(options.report / comparison.flip_image, a.picture.width, a.picture.height,
+            colored(flip, 1.0f, magma_color));
   write_file(options.report / "comparison.json", to_json(comparison).dump(2) + "\n");
   write_file(options.report / "report.html", report_html(comparison));
-  fmt::print(stderr, "{}: RMSE {:.5f} shown, {:.5f} linear; {:.1f} and {:.1f} ms (medians of {}) on {}\n",
-             (options.report / "report.html").string(), comparison.differences.rmse_shown,
-             comparison.differences.rmse_linear, comparison.a.stats.frame_ms, comparison.b.stats.frame_ms,
-             comparison.a.frames, comparison.a.device);
+  const Differences& d = comparison.differences;
+  fmt::print(stderr,
+             "{}: RMSE {:.5f} shown, {:.5f} linear; SSIM {}; FLIP {:.5f}; {:.1f} and {:.1f} ms (medians of {}) on {}\n",
+             (options.report / "report.html").string(), d.rmse_shown, d.rmse_linear,
+             d.ssim ? fmt::format("{:.5f}", *d.ssim) : "none", d.flip, comparison.a.stats.frame_ms,
+             comparison.b.stats.frame_ms, comparison.a.frames, comparison.a.device);
 }
 
 }  // namespace chandelier::player

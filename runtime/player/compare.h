@@ -3,9 +3,8 @@
 // JSON.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +20,8 @@ struct Differences {
   double rmse_shown = 0.0;
   double max_linear = 0.0;
   double max_shown = 0.0;
+  std::optional<double> ssim;  // absent where the picture is smaller than its window
+  double flip = 0.0;           // mean over the pixels
 };
 
 struct Comparison {
@@ -29,21 +30,20 @@ struct Comparison {
   Differences differences;
   std::string difference_image;
   float heat_scale = 0.0f;  // the shown difference that is drawn red
+  std::string flip_image;
 };
 
-/// Over R, G and B of every pixel; both of the same size.
-Differences differences(const Picture& a, const Picture& b);
+/// RMSE and largest error are over R, G and B of every pixel; `flip` is flip_map() of the two, of which it takes the
+/// mean. Both of the same size.
+Differences differences(const Picture& a, const Picture& b, std::span<const float> flip);
 /// Per pixel: the largest difference of a shown channel, 0..1.
 std::vector<float> shown_differences(const Picture& a, const Picture& b);
 /// The value that 99.9 % of `values` do not exceed, so that a few stray pixels do not darken the map; where that is 0
 /// their largest, and 1/255 where they all are 0.
 float heat_scale(std::vector<float> values);
-/// Dark blue at 0, cyan, yellow, red at 1; sRGB.
-std::array<uint8_t, 3> heat_color(float t);
-
 nlohmann::ordered_json to_json(const Comparison& comparison);
 
-/// Draws both recipes in turns and writes pictures, difference.png, comparison.json and report.html. Throws.
+/// Draws both recipes in turns and writes pictures, difference.png, flip.png, comparison.json and report.html. Throws.
 void run_comparison(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer);
 
 }  // namespace chandelier::player

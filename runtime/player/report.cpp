@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "player/metrics/color_maps.h"
+
 namespace chandelier::player {
 namespace {
 
@@ -80,11 +82,11 @@ std::string pictures(const Comparison& c) {
   return html + "</div>\n";
 }
 
-// The colours of the map, low to high, with the values they stand for.
-std::string color_bar(float scale) {
+// The colours of a map, low to high, with the values they stand for.
+std::string color_bar(std::string_view id, ColorMap colors, float scale) {
   std::string stops;
   for (int i = 0; i <= 16; ++i) {
-    const auto [r, g, b] = heat_color(static_cast<float>(i) / 16.0f);
+    const auto [r, g, b] = colors(static_cast<float>(i) / 16.0f);
     stops += fmt::format("<stop offset=\"{}\" stop-color=\"rgb({},{},{})\"/>", i / 16.0, r, g, b);
   }
   std::string labels;
@@ -96,22 +98,43 @@ std::string color_bar(float scale) {
                  : "middle",
         scale * static_cast<float>(i) / 4.0f);
   return fmt::format(
-      "<svg width=\"360\" height=\"38\" role=\"img\" aria-label=\"Colour bar\"><defs><linearGradient id=\"heat\">{}"
-      "</linearGradient></defs><rect width=\"360\" height=\"18\" fill=\"url(#heat)\"/>{}</svg>",
-      stops, labels);
+      "<svg width=\"360\" height=\"38\" role=\"img\" aria-label=\"Colour bar\"><defs><linearGradient id=\"{0}\">{1}"
+      "</linearGradient></defs><rect width=\"360\" height=\"18\" fill=\"url(#{0})\"/>{2}</svg>",
+      id, stops, labels);
+}
+
+std::string metric_row(std::string_view name, const std::string& value, std::string_view meaning) {
+  return fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n", name, value, meaning);
+}
+
+std::string metrics(const Differences& d) {
+  const auto errors = [](double shown, double linear) { return fmt::format("{:.6f}<br>{:.6f}", shown, linear); };
+  return "<table><tr><th>metric</th><th class=\"n\">value</th><th>meaning</th></tr>\n" +
+         metric_row("RMSE<br>of linear radiance", errors(d.rmse_shown, d.rmse_linear),
+                    "Root of the mean squared difference over R, G and B of every pixel; 0 is equal.") +
+         metric_row("largest error<br>of linear radiance", errors(d.max_shown, d.max_linear),
+                    "Largest difference over R, G and B of every pixel.") +
+         metric_row(
+             "SSIM", d.ssim ? fmt::format("{:.6f}", *d.ssim) : "–",
+             "Likeness of local means, contrasts and structures in windows of 11×11 pixels (Wang et al. 2004), mean "
+             "over R, G and B; 1 is equal.") +
+         metric_row("FLIP", fmt::format("{:.6f}", d.flip),
+                    "Difference that a viewer sees who flips between the pictures 0.7 m before a screen 0.7 m and 3840 "
+                    "pixels wide (Andersson et al. 2020), mean over the pixels; 0 is equal.") +
+         "</table>\n<p class=\"about\">Of the shown pictures, sRGB 0..1, unless something else is said.</p>\n";
 }
 
 std::string difference(const Comparison& c) {
-  const Differences& d = c.differences;
   return fmt::format(
-      "<h2>Difference</h2>\n<figure><img src=\"{0}\" alt=\"Heat map of the difference\"><figcaption>{1}<br>Largest "
-      "difference of R, G and B of the shown pictures (0..1) at each pixel; dark blue is none, red is {2:.3g} and more "
-      "(0.1 % of the pixels at most lie above).</figcaption></figure>\n"
-      "<table><tr><th></th><th class=\"n\">RMSE</th><th class=\"n\">largest</th></tr>"
-      "<tr><td>shown, sRGB 0..1</td><td class=\"n\">{3:.6f}</td><td class=\"n\">{4:.6f}</td></tr>"
-      "<tr><td>linear radiance</td><td class=\"n\">{5:.6f}</td><td class=\"n\">{6:.6f}</td></tr></table>\n",
-      escape_html(c.difference_image), color_bar(c.heat_scale), c.heat_scale, d.rmse_shown, d.max_shown, d.rmse_linear,
-      d.max_linear);
+             "<h2>Difference</h2>\n<div class=\"pair\">\n<figure><img src=\"{0}\" alt=\"Heat map of the "
+             "difference\"><figcaption>{1}<br>Largest difference of R, G and B of the shown pictures (0..1) at each "
+             "pixel; dark blue is none, red is {2:.3g} and more (0.1 % of the pixels at most lie "
+             "above).</figcaption></figure>\n<figure><img src=\"{3}\" alt=\"Map of FLIP\"><figcaption>{4}<br>FLIP at "
+             "each "
+             "pixel.</figcaption></figure>\n</div>\n",
+             escape_html(c.difference_image), color_bar("heat", heat_color, c.heat_scale), c.heat_scale,
+             escape_html(c.flip_image), color_bar("magma", magma_color, 1.0f)) +
+         metrics(c.differences);
 }
 
 const StageTime* find_stage(const Run& run, const std::string& name) {

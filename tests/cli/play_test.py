@@ -247,8 +247,8 @@ class Links(html.parser.HTMLParser):
 
 
 class Compare(PlayTest):
-    def compare(self, *arguments, presets="reference,lightcluster"):
-        self.play_well(self.pack, "--compare", presets, "--report", "out/report", "--frames", 2, *SMALL, *arguments)
+    def compare(self, *arguments, presets="reference,lightcluster", size=SMALL):
+        self.play_well(self.pack, "--compare", presets, "--report", "out/report", "--frames", 2, *size, *arguments)
         self.report = self.folder / "out/report"
         comparison = json.loads((self.report / "comparison.json").read_text())
         schema_validator("comparison.schema.json").validate(comparison)
@@ -257,15 +257,17 @@ class Compare(PlayTest):
     def test_writes_everything_that_the_page_links(self):
         self.compare()
         self.assertEqual(sorted(os.listdir(self.report)),
-                         ["comparison.json", "difference.png", "lightcluster.exr", "lightcluster.png", "reference.exr",
+                         ["comparison.json", "difference.png", "flip.png", "lightcluster.exr", "lightcluster.png", "reference.exr",
                           "reference.png", "report.html"])
-        self.assertEqual(png_size(self.report / "difference.png"), (96, 54))
+        for picture in ("difference.png", "flip.png"):
+            self.assertEqual(png_size(self.report / picture), (96, 54))
         page = (self.report / "report.html").read_text()
         links = Links()
         links.feed(page)
         self.assertEqual(links.open, [])
         self.assertEqual({target for target in links.targets if not target.startswith("#")},
-                         {"reference.png", "lightcluster.png", "reference.exr", "lightcluster.exr", "difference.png"})
+                         {"reference.png", "lightcluster.png", "reference.exr", "lightcluster.exr", "difference.png",
+                          "flip.png"})
 
     def test_agrees_with_single_pictures_at_the_same_exposure(self):
         comparison = self.compare("--d-init", 0.6)
@@ -280,7 +282,21 @@ class Compare(PlayTest):
         self.assertAlmostEqual(comparison["rmse"]["linear"], numpy.sqrt(numpy.mean(error**2)), 9)
         self.assertAlmostEqual(comparison["max_error"]["linear"], numpy.abs(error).max(), 9)
         self.assertGreater(comparison["rmse"]["linear"], 0)
+        self.assertTrue(0 < comparison["flip"]["mean"] < 0.5 < comparison["ssim"] < 1)
         self.assertLess(comparison["b"]["counters"]["shadow_maps"], comparison["a"]["counters"]["shadow_maps"])
+
+    @unittest.skipUnless(shutil.which("compare"), "ImageMagick is not installed")
+    def test_rmse_is_imagemagick_s(self):
+        comparison = self.compare("--d-init", 0.6)
+        done = subprocess.run(["compare", "-metric", "RMSE", self.report / "reference.png",
+                               self.report / "lightcluster.png", "null:"], stderr=subprocess.PIPE, text=True)
+        found = float(re.search(r"\((.*)\)", done.stderr).group(1))
+        self.assertAlmostEqual(comparison["rmse"]["shown"], found, 6)  # it prints six digits
+
+    def test_tiny_pictures_have_no_ssim(self):
+        for width, has_ssim in ((10, False), (11, True)):
+            comparison = self.compare(size=["--size", f"{width}x54", "--face-size", "64"])
+            self.assertEqual(comparison["ssim"] is not None, has_ssim, width)
 
     def test_light_clusters_of_one_light_each_are_the_reference(self):
         comparison = self.compare("--d-init", 0, "--filter", "hard")
@@ -291,6 +307,7 @@ class Compare(PlayTest):
     def test_a_preset_against_itself(self):
         comparison = self.compare(presets="reference,reference")
         self.assertEqual(comparison["rmse"], {"linear": 0, "shown": 0})
+        self.assertEqual((comparison["ssim"], comparison["flip"]["mean"]), (1, 0))
         self.assertNotEqual(comparison["a"]["image"], comparison["b"]["image"])
         for side in "ab":
             self.assertTrue((self.report / comparison[side]["image"]).exists())

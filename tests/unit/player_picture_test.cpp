@@ -11,6 +11,7 @@
 #include "pack_sample.h"
 #include "player/compare.h"
 #include "player/image_files.h"
+#include "player/metrics/color_maps.h"
 #include "player/report.h"
 #include "player/stats.h"
 
@@ -114,20 +115,22 @@ TEST(PlayerPictures, DevicesAreWrittenInPlaceAndTheirErrorsSeen) {
 TEST(PlayerCompare, DifferencesMatchHandValues) {
   Picture a{2, 1, {0, 0, 0, 1, 1, 1, 1, 1}, {0, 0, 0, 255, 100, 100, 100, 255}};
   Picture b{2, 1, {3, 0, 0, 9, 1, 1, 5, 1}, {51, 0, 0, 0, 100, 100, 0, 255}};  // alpha must not count
-  const Differences d = differences(a, b);
+  const Differences d = differences(a, b, std::vector{0.25f, 0.75f});
   EXPECT_NEAR(d.rmse_linear, std::sqrt((9.0 + 16.0) / 6.0), 1e-12);
   EXPECT_NEAR(d.max_linear, 4.0, 1e-12);
   EXPECT_NEAR(d.rmse_shown, std::sqrt((0.2 * 0.2 + (100.0 / 255.0) * (100.0 / 255.0)) / 6.0), 1e-12);
   EXPECT_NEAR(d.max_shown, 100.0 / 255.0, 1e-12);
+  EXPECT_EQ(d.flip, 0.5);
+  EXPECT_FALSE(d.ssim) << "no window fits";
   const auto values = shown_differences(a, b);
   ASSERT_EQ(values.size(), 2u);
   EXPECT_FLOAT_EQ(values[0], 0.2f);
   EXPECT_FLOAT_EQ(values[1], 100.0f / 255.0f);
-  const Differences none = differences(a, a);
+  const Differences none = differences(a, a, {});
   EXPECT_EQ(none.rmse_linear, 0.0);
   EXPECT_EQ(none.max_shown, 0.0);
   b.width = 1;
-  EXPECT_THROW(differences(a, b), std::invalid_argument);
+  EXPECT_THROW(differences(a, b, {}), std::invalid_argument);
 }
 
 TEST(PlayerCompare, HeatGoesFromDarkBlueToRed) {
@@ -199,8 +202,10 @@ TEST(PlayerReport, NothingFromOutsideReachesThePageUnescaped) {
   }
   comparison.difference_image = "difference.png";
   comparison.heat_scale = 0.1f;
+  comparison.flip_image = "<flip>.png";
   const std::string html = report_html(comparison);
-  for (const char* raw : {"<script>pack", "<b>device", "<i>co", "<img src=x", "light<cluster", "<stage>", "it's \"a\""})
+  for (const char* raw :
+       {"<script>pack", "<b>device", "<i>co", "<img src=x", "light<cluster", "<stage>", "it's \"a\"", "<flip>"})
     EXPECT_EQ(html.find(raw), std::string::npos) << raw;
   for (const char* safe : {"&lt;script&gt;pack", "&lt;b&gt;device", "&lt;stage&gt;", "it&#39;s &quot;a&quot;.png"})
     EXPECT_NE(html.find(safe), std::string::npos) << safe;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "player/metrics/ssim.h"
+
+#include "player/metrics/planes.h"
+
+namespace chandelier::player {
+namespace {
+
+constexpr uint32_t kRadius = 5;
+constexpr double kSigma = 1.5;
+constexpr double kC1 = 0.01 * 0.01;  // (K L)² with a range L of 1
+constexpr double kC2 = 0.03 * 0.03;
+
+Plane channel_of(const Picture& picture, std::size_t channel) {
+  Plane plane{picture.width, picture.height, {}};
+  for (std::size_t i = channel; i < picture.shown.size(); i += 4) plane.values.push_back(picture.shown[i] / 255.0);
+  return plane;
+}
+
+// Weighted mean, around each pixel, of the product of two channels.
+Plane mean_product(const Plane& a, const Plane& b, const Kernel& window) {
+  Plane product = a;
+  for (std::size_t i = 0; i < product.values.size(); ++i) product.values[i] *= b.values[i];
+  return filtered(product, window, window);
+}
+
+// Wang et al. eq. 13, averaged as in eq. 14.
+double mean_ssim(const Plane& a, const Plane& b) {
+  const Kernel window = normalised(gaussian(kRadius, kSigma));
+  const Plane mean_a = filtered(a, window, window);
+  const Plane mean_b = filtered(b, window, window);
+  const Plane aa = mean_product(a, a, window);
+  const Plane bb = mean_product(b, b, window);
+  const Plane ab = mean_product(a, b, window);
+  double sum = 0.0;
+  for (std::size_t y = kRadius; y + kRadius < a.height; ++y) {
+    for (std::size_t x = kRadius; x + kRadius < a.width; ++x) {
+      const std::size_t i = y * a.width + x;
+      const double ma = mean_a.values[i], mb = mean_b.values[i];
+      const double variances = aa.values[i] - ma * ma + bb.values[i] - mb * mb;
+      const double covariance = ab.values[i] - ma * mb;
+      sum += (2.0 * ma * mb + kC1) * (2.0 * covariance + kC2) / ((ma * ma + mb * mb + kC1) * (variances + kC2));
+    }
+  }
+  return sum / (static_cast<double>(a.width - 2 * kRadius) * (a.height - 2 * kRadius));
+}
+
+}  // namespace
+
+std::optional<double> ssim(const Picture& a, const Picture& b) {
+  if (a.width <= 2 * kRadius || a.height <= 2 * kRadius) return std::nullopt;
+  double sum = 0.0;
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    sum += mean_ssim(channel_of(a, channel), channel_of(b, channel));
+  return sum / 3.0;
+}
+
+}  // namespace chandelier::player
