@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays through a pack's own hierarchies. Plain C++, no Vulkan.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "pack_schema.h"
+#include "rays/ray.h"
+
+namespace chandelier::rays {
+
+struct Hit {
+  float distance_m;
+  glm::vec3 normal_ws;  // of the triangle, unit length, out of its front
+  uint32_t instance;    // numbers in the pack
+  uint32_t batch;
+  uint32_t material;
+};
+
+/// Answers for the triangles of a pack as it rests. What moves is met where it is before it moves. Alpha-masked
+/// materials are never met: what their texture leaves of them is not looked at. Safe to ask from several threads.
+class PackRays {
+ public:
+  /// What `pack` points to must outlive it. A pack without hierarchies is searched box by box, which is slow.
+  explicit PackRays(const pack::View& pack);
+
+  /// Does a triangle lie strictly between? Both ends are shrunk by end_gap_m(), so that points on surfaces do not meet
+  /// their own.
+  bool blocked(const glm::vec3& from_ws, const glm::vec3& to_ws) const;
+  /// The first triangle, seen from either side, that lies less than max_m along `way_ws`, of any length but 0. One that
+  /// holds `from_ws` may be met at a distance of next to nothing: start off the surface.
+  std::optional<Hit> first_hit(const glm::vec3& from_ws, const glm::vec3& way_ws, float max_m) const;
+
+  /// 1e-4 of the distance, or what floats leave uncertain this far from the origin where that is more.
+  static float end_gap_m(const glm::vec3& from_ws, const glm::vec3& to_ws);
+
+ private:
+  // In the space of its mesh, where the tree's leaf has it.
+  struct Triangle {
+    std::array<glm::vec3, 3> corners_ls;
+    uint32_t batch;
+  };
+  struct Met {
+    uint32_t instance = pack::none;
+    uint32_t batch = pack::none;
+    uint32_t first_index = 0;  // of its corners
+  };
+
+  void gather_triangles();
+  void gather_instances();
+  std::array<glm::vec3, 3> corners_ws(uint32_t instance, uint32_t first_index) const;
+
+  // Each returns whether it may stop: the ray has met something, and that is enough. Shortens the ray to what it meets.
+  template <bool any_is_enough>
+  bool cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Ray& ray, Met& met) const;
+  template <bool any_is_enough>
+  bool cast_at_instance(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Ray& ray, Met& met) const;
+  template <bool any_is_enough>
+  bool cast_at_batch(const pack::BatchInstance& draw, Ray& ray, Met& met) const;
+  bool is_masked(uint32_t batch) const;
+
+  pack::View pack_;
+  std::vector<Triangle> triangles_;            // as triangle_bvh_items
+  std::vector<glm::mat4x3> local_from_world_;  // one per instance
+  std::vector<uint32_t> unsorted_instances_;   // with a tree of their own, but not in instance_bvh
+  std::vector<uint32_t> loose_;                // batch instances that no tree leads to
+};
+
+}  // namespace chandelier::rays
