@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lookups in cube shadow maps, drawn by the runtime's own stages, agree with rays that Embree traces.
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iostream>
 #include <random>
 
+#include "../rays/embree_scene.h"
 #include "frame/rounds.h"
 #include "frame/targets.h"
 #include "gpu_test.h"
@@ -57,46 +56,6 @@ Scene cluttered_room(Random& random) {
   return scene;
 }
 
-class RayScene {
- public:
-  explicit RayScene(const std::vector<std::array<glm::vec3, 3>>& triangles)
-      : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* corners = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), triangles.size() * 3));
-    auto* indices = static_cast<uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
-    for (size_t i = 0; i < triangles.size() * 3; ++i) {
-      corners[i] = triangles[i / 3][i % 3];
-      indices[i] = static_cast<uint32_t>(i);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-  ~RayScene() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  RayScene(const RayScene&) = delete;
-  RayScene& operator=(const RayScene&) = delete;
-
-  bool blocked(const glm::vec3& from, const glm::vec3& to) const {
-    const glm::vec3 d = to - from;
-    RTCRay ray{from.x, from.y, from.z, 0.0f, d.x, d.y, d.z, 0.0f, 1.0f, ~0u, 0, 0};
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene_, &context, &ray);
-    return ray.tfar < 0.0f;
-  }
-
- private:
-  RTCDevice device_;
-  RTCScene scene_;
-};
-
 // As lookup.comp has it, scalar layout.
 struct Question {
   glm::vec3 p;
@@ -139,7 +98,7 @@ std::vector<Question> ask(Random& random, const std::vector<std::array<glm::vec3
 // texel away from it diagonally as the light sees them, each raised off that plane by next to nothing and by a whole
 // texel.
 enum class Truth { lit, dark, band };
-Truth truth(const RayScene& rays, const Question& q, const glm::vec3& light, uint32_t face_size_px) {
+Truth truth(const EmbreeScene& rays, const Question& q, const glm::vec3& light, uint32_t face_size_px) {
   const glm::vec3 d = q.p - light;
   const int axis = std::abs(d.x) >= std::abs(d.y) && std::abs(d.x) >= std::abs(d.z) ? 0
                    : std::abs(d.y) >= std::abs(d.z)                                 ? 1
@@ -240,7 +199,7 @@ class CubeLookupTest : public GpuTest {
     const Maps maps = draw_maps(pack, face_size_px);
     const auto questions = ask(random, triangles, maps.list.maps);
     const auto found = answers(maps, questions);
-    const RayScene rays(triangles);
+    const EmbreeScene rays(triangles);
     uint32_t lit = 0, dark = 0, band = 0, wrong = 0;
     for (size_t i = 0; i < questions.size(); ++i) {
       const Truth expected = truth(rays, questions[i], maps.list.maps[questions[i].map].center_ws, face_size_px);
