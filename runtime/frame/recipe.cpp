@@ -13,13 +13,13 @@ using Names = std::span<const std::string_view>;
 // In the order of the enumerators in recipe.h.
 constexpr std::string_view g_buffer_names[]{"depth-normal-material"};
 constexpr std::string_view select_names[]{"per-light", "light-clusters"};
-constexpr std::string_view lookup_names[]{"all"};
+constexpr std::string_view lookup_names[]{"all", "tiles"};
 constexpr std::string_view store_names[]{"cube-array"};
 constexpr std::string_view project_names[]{"cube"};
 constexpr std::string_view cull_names[]{"none", "light-frustum"};
 constexpr std::string_view rasterize_names[]{"multi-draw"};
-constexpr std::string_view filter_names[]{"hard", "pcf"};
-constexpr std::string_view deliver_names[]{"inline"};
+constexpr std::string_view filter_names[]{"hard", "pcf", "rays"};
+constexpr std::string_view deliver_names[]{"inline", "textures"};
 constexpr std::string_view shade_names[]{"ggx", "lambert"};
 constexpr std::string_view scaling_names[]{"grow", "paper-formula", "none"};
 
@@ -66,10 +66,19 @@ constexpr Recipe lightcluster_recipe() {
   return recipe;
 }
 
+constexpr Recipe truth_recipe() {
+  Recipe recipe;
+  recipe.filter = Filter::rays;
+  recipe.deliver = Deliver::textures;
+  return recipe;
+}
+
 const std::array preset_list{
     Preset{"reference", "one shadow map per light in view, hard shadows: what the others are measured against",
            Recipe{}},
     Preset{"lightcluster", "one shadow map per light cluster, read by PCF (LightCluster)", lightcluster_recipe()},
+    Preset{"truth", "rays from every visible point to every light, on the CPU: what shadow maps are measured against",
+           truth_recipe()},
 };
 
 }  // namespace
@@ -104,6 +113,8 @@ std::optional<std::string> refusal(const Recipe& recipe) {
   if (clustered && recipe.filter == Filter::hard && recipe.d_init_m > 0.0f)
     return "select light-clusters with filter hard: lights that share a map need a soft filter (LightCluster §3.2.1); "
            "use filter pcf, or d-init 0";
+  if (recipe.filter == Filter::rays && (recipe.select != Select::per_light || recipe.deliver != Deliver::textures))
+    return "filter rays: needs select per-light and deliver textures (preset truth)";
   return std::nullopt;
 }
 

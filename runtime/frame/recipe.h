@@ -14,13 +14,13 @@ namespace chandelier {
 
 enum class GBuffer : uint32_t { depth_normal_material };
 enum class Select : uint32_t { per_light, light_clusters };
-enum class Lookup : uint32_t { all };
+enum class Lookup : uint32_t { all, tiles };
 enum class Store : uint32_t { cube_array };
 enum class Project : uint32_t { cube };
 enum class Cull : uint32_t { none, light_frustum };
 enum class Rasterize : uint32_t { multi_draw };
-enum class Filter : uint32_t { hard, pcf };
-enum class Deliver : uint32_t { inlined };
+enum class Filter : uint32_t { hard, pcf, rays };
+enum class Deliver : uint32_t { inlined, textures };
 enum class Shade : uint32_t { ggx, lambert };
 
 using lights::DistanceScaling;
@@ -28,7 +28,7 @@ using lights::DistanceScaling;
 struct Recipe {
   GBuffer g_buffer = GBuffer::depth_normal_material;
   Select select = Select::per_light;
-  Lookup lookup = Lookup::all;
+  Lookup lookup = Lookup::tiles;
   Store store = Store::cube_array;
   Project project = Project::cube;
   Cull cull = Cull::light_frustum;

@@ -6,15 +6,15 @@
 #include <chrono>
 #include <cstring>
 
-#include "frame/rounds.h"
+#include "frame/frame_plan.h"
+#include "frame/ray_visibility.h"
 #include "frame/targets.h"
 #include "gpu/timers.h"
-#include "lights/light_list.h"
+#include "lookup/tiles.h"
 #include "scene/gpu_scene.h"
 #include "shading/g_buffer.h"
 #include "shading/shade.h"
 #include "shading/tone_map.h"
-#include "shadows/project/shadow_views.h"
 #include "shadows/raster/caster_pass.h"
 
 namespace chandelier {
@@ -47,31 +47,7 @@ struct Streamed {
   }
 };
 
-std::array<glm::vec4, 4> columns(const glm::mat4& m) {
-  return {m[0], m[1], m[2], m[3]};
-}
-
-frame::ViewConstants view_constants(const RenderSettings& settings, const glm::mat4& clip_from_world) {
-  return {.clip_from_world = columns(clip_from_world),
-          .world_from_clip = columns(glm::inverse(clip_from_world)),
-          .eye_ws = settings.camera.eye_ws,
-          .forward_ws = axes_of(settings.camera).forward,
-          .ambient = settings.ambient,
-          .size_px = {static_cast<float>(settings.width), static_cast<float>(settings.height)},
-          .face_size_px = static_cast<float>(settings.recipe.face_size_px)};
-}
-
 }  // namespace
-
-// What the CPU decides before anything is recorded.
-struct FramePlan {
-  LightList list;
-  std::vector<frame::ShadowView> views;  // of all maps, then the camera's
-  std::vector<Round> rounds;
-  frame::ViewConstants view;
-  double select_ms = 0.0;
-  double project_ms = 0.0;
-};
 
 struct Renderer::Impl {
   gpu::Device& device;
@@ -79,6 +55,7 @@ struct Renderer::Impl {
   CullPipelines cull;
   CasterPipelines casters;
   gpu::Pipeline g_buffer;
+  TilePipeline tile_pipeline;
   ShadePipelines shade;
   TonePipelines tone;
   gpu::Timers timers;
@@ -89,6 +66,8 @@ struct Renderer::Impl {
   DrawLists camera_draws;
   DrawLists shadow_draws;
   Streamed view, lights, maps, views;
+  TileLists tiles;
+  gpu::Buffer visibility;
   gpu::Buffer counters;  // one per round, then the camera's
   gpu::Buffer counters_readback;
   gpu::Buffer exposure_readback;
@@ -99,6 +78,7 @@ struct Renderer::Impl {
         cull(make_cull_pipelines(on)),
         casters(make_caster_pipelines(on, scene)),
         g_buffer(make_g_buffer_pipeline(on, scene)),
+        tile_pipeline(make_tile_pipeline(on)),
         shade(make_shade_pipelines(on)),
         tone(make_tone_pipelines(on)),
         timers(on),
@@ -109,28 +89,22 @@ struct Renderer::Impl {
 
   FramePlan plan(const RenderSettings& settings);
   void make_room(const RenderSettings& settings, const FramePlan& plan);
-  void record(VkCommandBuffer cmd, const RenderSettings& settings, const FramePlan& plan);
   void record_uploads(VkCommandBuffer cmd, const FramePlan& plan);
-  void record_round(VkCommandBuffer cmd, const Recipe& recipe, const FramePlan& plan, uint32_t round);
+  void record_start(VkCommandBuffer cmd, const FramePlan& plan);
+  void record_shadow_maps(VkCommandBuffer cmd, const FramePlan& plan, uint32_t round);
+  void record_light(VkCommandBuffer cmd, const FramePlan& plan, const Round& round);
+  void record_end(VkCommandBuffer cmd, const RenderSettings& settings);
+  void draw(const RenderSettings& settings, const FramePlan& plan);
+  void draw_by_rays(const RenderSettings& settings, const FramePlan& plan);
   FrameStats read_stats(const RenderSettings& settings, const FramePlan& plan);
 };
 
 FramePlan Renderer::Impl::plan(const RenderSettings& settings) {
-  const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-  const glm::mat4 clip = clip_from_world(settings.camera, aspect);
-  FramePlan plan;
-  auto start = Clock::now();
-  plan.list = select_lights(scene.lights, settings.recipe, settings.camera, aspect);
-  plan.select_ms = ms_since(start);
-
-  start = Clock::now();
-  plan.views = project_lights(plan.list, settings.camera, aspect, scene.bounds, settings.recipe.face_size_px);
-  const uint32_t cubes = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes);
-  plan.rounds = plan_rounds(plan.list, plan.views, cubes, most_draws / std::max(1u, scene.batch_instance_count));
-  plan.view = view_constants(settings, clip);
-  plan.views.push_back({.clip_from_world = plan.view.clip_from_world});
-  plan.project_ms = ms_since(start);
-  return plan;
+  const uint64_t batch_instances = std::max(1u, scene.batch_instance_count);
+  return plan_frame(scene.lights, scene.bounds, settings,
+                    {.maps = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes),
+                     .views = most_draws / batch_instances,
+                     .visibility_bytes = device.limits.maxStorageBufferRange});
 }
 
 // Images and buffers that the frame needs; what is there already and large enough is kept.
@@ -140,12 +114,20 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
     targets = make_targets(device, settings.width, settings.height);
     luminance_sums = make_luminance_sums(device, settings.width, settings.height);
   }
+  const bool by_rays = plan.recipe.filter == Filter::rays;
   uint32_t cubes = 1;
   uint32_t views_at_once = 1;
+  uint64_t visibility_bytes = 0;
   for (const Round& round : plan.rounds) {
-    cubes = std::max(cubes, round.map_count);
+    if (!by_rays) cubes = std::max(cubes, round.map_count);
     views_at_once = std::max(views_at_once, round.view_count);
+    visibility_bytes = std::max(visibility_bytes, round.visibility_bytes);
   }
+  if (plan.recipe.lookup == Lookup::tiles)
+    make_tile_lists(device, settings.width, settings.height, plan.list.lights.size(), tiles);
+  if (visibility.size_bytes < visibility_bytes || by_rays == !visibility.mapped)
+    visibility = gpu::make_buffer(device, visibility_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                  by_rays ? gpu::Memory::upload : gpu::Memory::device);
   if (store.face_size_px != settings.recipe.face_size_px || store.cube_count < cubes) {
     store = {};
     store = make_cube_array(device, settings.recipe.face_size_px, cubes);
@@ -176,39 +158,12 @@ void Renderer::Impl::record_uploads(VkCommandBuffer cmd, const FramePlan& plan) 
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 }
 
-// Draws the shadow maps of a round and adds the light of its lights.
-void Renderer::Impl::record_round(VkCommandBuffer cmd, const Recipe& recipe, const FramePlan& plan, uint32_t number) {
-  const Round& round = plan.rounds[number];
-  timers.begin(cmd, "cull");
-  record_cull(cmd, device, recipe.cull == Cull::none ? cull.none : cull.light_frustum, scene,
-              {.views = views.device,
-               .counters = counters,
-               .first_view = round.first_view,
-               .view_count = round.view_count,
-               .merged_runs = std::max(1u, scene.opaque_runs),
-               .round = number},
-              shadow_draws);
-  timers.end(cmd);
-
-  timers.begin(cmd, "rasterize");
-  record_casters(cmd, casters, scene, shadow_draws, views.device, round.view_count, store, round.map_count);
-  timers.end(cmd);
-
-  timers.begin(cmd, "shade");
-  record_shade(cmd, shade, recipe,
-               {.view = view.device,
-                .lights = lights.device,
-                .maps = maps.device,
-                .views = views.device,
-                .first_map = round.first_map,
-                .map_count = round.map_count},
-               store, targets);
-  timers.end(cmd);
-}
-
-void Renderer::Impl::record(VkCommandBuffer cmd, const RenderSettings& settings, const FramePlan& plan) {
-  timers.start_frame(cmd, static_cast<uint32_t>(3 * plan.rounds.size() + 2));
+// What the camera sees, and which lights reach it.
+void Renderer::Impl::record_start(VkCommandBuffer cmd, const FramePlan& plan) {
+  timers.start_frame(cmd, static_cast<uint32_t>(4 * plan.rounds.size() + 3));
   record_uploads(cmd, plan);
+  timers.add_cpu("select", plan.select_ms);
+  timers.add_cpu("project", plan.project_ms);
 
   timers.begin(cmd, "g-buffer");
   record_cull(cmd, device, cull.light_frustum, scene,
@@ -223,10 +178,54 @@ void Renderer::Impl::record(VkCommandBuffer cmd, const RenderSettings& settings,
   record_g_buffer(cmd, g_buffer, scene, camera_draws, view.device, targets);
   timers.end(cmd);
 
-  timers.add_cpu("select", plan.select_ms);
-  timers.add_cpu("project", plan.project_ms);
-  for (uint32_t round = 0; round < plan.rounds.size(); ++round) record_round(cmd, settings.recipe, plan, round);
+  if (plan.recipe.lookup == Lookup::tiles) {
+    timers.begin(cmd, "lookup");
+    record_tiles(cmd, tile_pipeline, view.device, lights.device, plan.list.lights.size(), targets, tiles);
+    timers.end(cmd);
+  }
+}
 
+// Draws the shadow maps of a round.
+void Renderer::Impl::record_shadow_maps(VkCommandBuffer cmd, const FramePlan& plan, uint32_t number) {
+  const Round& round = plan.rounds[number];
+  timers.begin(cmd, "cull");
+  record_cull(cmd, device, plan.recipe.cull == Cull::none ? cull.none : cull.light_frustum, scene,
+              {.views = views.device,
+               .counters = counters,
+               .first_view = round.first_view,
+               .view_count = round.view_count,
+               .merged_runs = std::max(1u, scene.opaque_runs),
+               .round = number},
+              shadow_draws);
+  timers.end(cmd);
+
+  timers.begin(cmd, "rasterize");
+  record_casters(cmd, casters, scene, shadow_draws, views.device, round.view_count, store, round.map_count);
+  timers.end(cmd);
+}
+
+// Adds the light of a round's lights. Where visibility comes from rays it is in `visibility` already.
+void Renderer::Impl::record_light(VkCommandBuffer cmd, const FramePlan& plan, const Round& round) {
+  const ShadeInput input{.view = view.device,
+                         .lights = lights.device,
+                         .maps = maps.device,
+                         .views = views.device,
+                         .visibility = visibility,
+                         .tiles = tiles,
+                         .first_light = round.first_light,
+                         .light_count = round.light_count};
+  if (plan.recipe.deliver == Deliver::textures && plan.recipe.filter != Filter::rays) {
+    timers.begin(cmd, "deliver");
+    record_visibility(cmd, device, shade, plan.recipe, input, store, targets);
+    timers.end(cmd);
+  }
+  timers.begin(cmd, "shade");
+  record_shade(cmd, device, shade, plan.recipe, input, store, targets);
+  timers.end(cmd);
+}
+
+// The picture as shown, and the counters.
+void Renderer::Impl::record_end(VkCommandBuffer cmd, const RenderSettings& settings) {
   timers.begin(cmd, "tone-map");
   record_tone_map(cmd, tone, settings.exposure_ev, luminance_sums, targets);
   timers.end(cmd);
@@ -241,6 +240,35 @@ void Renderer::Impl::record(VkCommandBuffer cmd, const RenderSettings& settings,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
 
+void Renderer::Impl::draw(const RenderSettings& settings, const FramePlan& plan) {
+  gpu::run_once(device, [&](VkCommandBuffer cmd) {
+    record_start(cmd, plan);
+    for (uint32_t round = 0; round < plan.rounds.size(); ++round) {
+      record_shadow_maps(cmd, plan, round);
+      record_light(cmd, plan, plan.rounds[round]);
+    }
+    record_end(cmd, settings);
+  });
+}
+
+// The caller's rays stand between the device's work: first what the camera sees, then each round's light.
+void Renderer::Impl::draw_by_rays(const RenderSettings& settings, const FramePlan& plan) {
+  const gpu::Buffer readback = make_surface_readback(device, settings.width, settings.height);
+  gpu::run_once(device, [&](VkCommandBuffer cmd) {
+    record_start(cmd, plan);
+    record_read_surfaces(cmd, targets, readback);
+  });
+  const auto points = surface_points(readback, plan.view);
+  const std::span<uint8_t> bytes(reinterpret_cast<uint8_t*>(visibility.mapped), visibility.size_bytes);
+  for (const Round& round : plan.rounds) {
+    const auto start = Clock::now();
+    fill_visibility(plan.list, round, points, settings.width, settings.visibility, bytes);
+    timers.add_cpu("filter", ms_since(start));
+    gpu::run_once(device, [&](VkCommandBuffer cmd) { record_light(cmd, plan, round); });
+  }
+  gpu::run_once(device, [&](VkCommandBuffer cmd) { record_end(cmd, settings); });
+}
+
 FrameStats Renderer::Impl::read_stats(const RenderSettings& settings, const FramePlan& plan) {
   FrameStats stats;
   for (const auto& stage : timers.read()) stats.stages.push_back({stage.name, stage.gpu_ms, stage.cpu_ms});
@@ -250,7 +278,7 @@ FrameStats Renderer::Impl::read_stats(const RenderSettings& settings, const Fram
   stats.lights = scene.lights.size();
   stats.lights_in_view = plan.list.lights.size();
   stats.light_clusters = plan.list.maps.size();
-  stats.shadow_maps = plan.list.maps.size();
+  stats.shadow_maps = plan.recipe.filter == Filter::rays ? 0 : plan.list.maps.size();
   stats.shadow_views = plan.views.size() - 1;
   for (size_t i = 0; i < plan.rounds.size(); ++i) {
     frame::CullCounters round;
@@ -258,10 +286,13 @@ FrameStats Renderer::Impl::read_stats(const RenderSettings& settings, const Fram
     stats.shadow_draws += round.draws;
     stats.shadow_triangles += round.triangles;
   }
-  stats.shadow_bytes = plan.list.maps.size() * cube_bytes(settings.recipe.face_size_px);
-  for (const Round& round : plan.rounds)
-    stats.shadow_pool_bytes =
-        std::max(stats.shadow_pool_bytes, round.map_count * cube_bytes(settings.recipe.face_size_px));
+  stats.shadow_bytes = stats.shadow_maps * cube_bytes(settings.recipe.face_size_px);
+  for (const Round& round : plan.rounds) {
+    const uint64_t held = stats.shadow_maps == 0 ? 0 : round.map_count * cube_bytes(settings.recipe.face_size_px);
+    stats.shadow_pool_bytes = std::max(stats.shadow_pool_bytes, held);
+    stats.visibility_bytes += round.visibility_bytes;
+    stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, round.visibility_bytes);
+  }
   stats.shadow_rounds = plan.rounds.size();
   return stats;
 }
@@ -278,10 +309,15 @@ FrameStats Renderer::draw(const RenderSettings& settings) {
   if (settings.width > largest || settings.height > largest)
     throw gpu::Error("a picture of " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
                      " pixels is too large for this device (" + std::to_string(largest) + ")");
+  if (settings.recipe.filter == Filter::rays && !settings.visibility)
+    throw std::invalid_argument("filter rays: nothing says what is visible (RenderSettings::visibility)");
   const auto start = Clock::now();
   const FramePlan plan = impl_->plan(settings);
   impl_->make_room(settings, plan);
-  gpu::run_once(impl_->device, [&](VkCommandBuffer cmd) { impl_->record(cmd, settings, plan); });
+  if (plan.recipe.filter == Filter::rays)
+    impl_->draw_by_rays(settings, plan);
+  else
+    impl_->draw(settings, plan);
   FrameStats stats = impl_->read_stats(settings, plan);
   stats.frame_ms = ms_since(start);
   return stats;
@@ -296,27 +332,7 @@ void Renderer::warm_up(const RenderSettings& settings) {
 }
 
 Picture Renderer::read_back() {
-  const Targets& targets = impl_->targets;
-  Picture picture{.width = targets.width, .height = targets.height};
-  const size_t pixels = size_t{targets.width} * targets.height;
-  const gpu::Buffer buffer =
-      gpu::make_buffer(impl_->device, pixels * 20, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
-  gpu::run_once(impl_->device, [&](VkCommandBuffer cmd) {
-    VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                           .imageExtent = {targets.width, targets.height, 1}};
-    gpu::image_barrier(cmd, targets.radiance, use::storage, use::copied);
-    vkCmdCopyImageToBuffer(cmd, targets.radiance.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle, 1, &copy);
-    gpu::image_barrier(cmd, targets.radiance, use::copied, use::storage);
-    copy.bufferOffset = pixels * 16;  // behind, because an offset must be a multiple of the texel's size
-    vkCmdCopyImageToBuffer(cmd, targets.shown.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle, 1, &copy);
-    gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                        VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
-  });
-  picture.shown.resize(pixels * 4);
-  picture.radiance.resize(pixels * 4);
-  std::memcpy(picture.radiance.data(), buffer.mapped, pixels * 16);
-  std::memcpy(picture.shown.data(), buffer.mapped + pixels * 16, pixels * 4);
-  return picture;
+  return read_picture(impl_->device, impl_->targets);
 }
 
 VkImage Renderer::shown_image() const {

@@ -4,25 +4,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "frame/camera.h"
-#include "frame/recipe.h"
+#include "frame/picture.h"
+#include "frame/render_settings.h"
 #include "gpu/device.h"
 #include "pack_file.h"
 
 namespace chandelier {
-
-struct RenderSettings {
-  Recipe recipe;
-  Camera camera;
-  uint32_t width = 1280;
-  uint32_t height = 720;
-  float ambient = 0.0f;              // radiance from everywhere, for scenes that would be black without
-  std::optional<float> exposure_ev;  // stops; absent: from the picture's own brightness
-};
 
 struct StageTime {
   std::string name;
@@ -42,18 +32,11 @@ struct FrameStats {
   uint64_t shadow_views = 0;
   uint64_t shadow_triangles = 0;
   uint64_t shadow_draws = 0;
-  uint64_t shadow_bytes = 0;       // depth that all shadow maps of the frame need together
-  uint64_t shadow_pool_bytes = 0;  // depth held at a time
-  uint64_t shadow_rounds = 0;      // how often the pool was filled
-  uint64_t visibility_bytes = 0;
-};
-
-/// Rows from the top, four channels.
-struct Picture {
-  uint32_t width = 0;
-  uint32_t height = 0;
-  std::vector<float> radiance;  // linear RGBA, before exposure and tone map
-  std::vector<uint8_t> shown;   // sRGB RGBA, as on a screen
+  uint64_t shadow_bytes = 0;           // depth that all shadow maps of the frame need together
+  uint64_t shadow_pool_bytes = 0;      // depth held at a time
+  uint64_t shadow_rounds = 0;          // how often the pool was filled
+  uint64_t visibility_bytes = 0;       // that all visibility textures of the frame need together
+  uint64_t visibility_pool_bytes = 0;  // of them, held at a time
 };
 
 class Renderer {
@@ -66,7 +49,8 @@ class Renderer {
 
   /// Draws a tiny frame and makes room for a real one, so that the real one's time is its own.
   void warm_up(const RenderSettings& settings);
-  /// Draws one frame and waits for it. Throws gpu::Error, std::invalid_argument where refusal() has a reason.
+  /// Draws one frame and waits for it. Throws gpu::Error, std::invalid_argument where refusal() has a reason or what
+  /// the recipe needs is missing in the settings.
   FrameStats draw(const RenderSettings& settings);
   /// The last frame drawn.
   Picture read_back();

@@ -14,11 +14,20 @@ struct Round {
   uint32_t map_count;
   uint32_t first_view;
   uint32_t view_count;
+  uint32_t first_light;
+  uint32_t light_count;
+  uint64_t visibility_bytes;  // of all its maps' visibility textures
 };
 
-/// Splits the maps into rounds of at most `cubes` maps and `max_views` views (a single map may exceed the latter), and
-/// gives every map its cube and every view its layer.
-std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& views, uint32_t cubes,
-                               uint64_t max_views);
+/// What a round may hold at most. A single map may exceed all but the first.
+struct RoundLimits {
+  uint32_t maps = 1;
+  uint64_t views = UINT64_MAX;
+  uint64_t visibility_bytes = UINT64_MAX;
+};
+
+/// Splits the maps into rounds, and gives every map its cube and the place of its visibility texture, and every view
+/// its layer.
+std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& views, const RoundLimits& limits);
 
 }  // namespace chandelier

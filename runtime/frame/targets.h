@@ -17,6 +17,9 @@ struct Targets {
 
 Targets make_targets(const gpu::Device& device, uint32_t width, uint32_t height);
 
+/// Reads a target texel by texel.
+gpu::Owned<VkSampler> make_texel_sampler(const gpu::Device& device);
+
 /// How images are used in a frame, for barriers.
 namespace use {
 inline constexpr gpu::ImageUse nothing{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,

@@ -96,13 +96,14 @@ struct Features {
     VkBool32* value;
     const char* name;
   };
-  std::array<Need, 11> needs() {
+  std::array<Need, 12> needs() {
     return {{{&core.features.fullDrawIndexUint32, "fullDrawIndexUint32"},
              {&core.features.imageCubeArray, "imageCubeArray"},
              {&core.features.multiDrawIndirect, "multiDrawIndirect"},
              {&core.features.drawIndirectFirstInstance, "drawIndirectFirstInstance"},
              {&core.features.samplerAnisotropy, "samplerAnisotropy"},
              {&v12.drawIndirectCount, "drawIndirectCount"},
+             {&v12.storageBuffer8BitAccess, "storageBuffer8BitAccess"},
              {&v12.scalarBlockLayout, "scalarBlockLayout"},
              {&v12.shaderOutputLayer, "shaderOutputLayer"},
              {&v13.dynamicRendering, "dynamicRendering"},

@@ -96,6 +96,7 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
                            .is_directional = is_directional(lights[member.center])});
     }
     list.lights.push_back(frame_light(lights[member.light]));
+    list.lights.back().map = static_cast<uint32_t>(list.maps.size() - 1);
     ++list.maps.back().light_count;
     list.pack_light.push_back(member.light);
   }

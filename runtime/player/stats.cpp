@@ -23,6 +23,7 @@ constexpr std::array kCounters{
     Counter{"shadow_pool_bytes", &FrameStats::shadow_pool_bytes, true},
     Counter{"shadow_rounds", &FrameStats::shadow_rounds, false},
     Counter{"visibility_bytes", &FrameStats::visibility_bytes, true},
+    Counter{"visibility_pool_bytes", &FrameStats::visibility_pool_bytes, true},
 };
 
 double median(std::vector<double> values) {

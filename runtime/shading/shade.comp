@@ -1,36 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds the light of one round's ShadowMaps to the picture. Lookup `all`: every light is tested against every pixel;
-// delivery `inline`: visibility is read here, once per shadow map and pixel, for all the lights that share the map.
+// Adds the light of one round's ShadowMaps to the picture. Lights that share a map follow each other, so that visibility
+// is had once per map and pixel: delivery `inline` filters it here, `textures` reads what visibility.comp left.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "frame_schema.glsl"
-#include "pack_schema.glsl"
+#include "shading/round.glsl"
 #include "shading/brdf.glsl"
-
-layout(constant_id = 0) const uint filter_answer = 0u;
-layout(constant_id = 1) const uint shade_answer = 0u;
-const uint FILTER_HARD = 0u, FILTER_PCF = 1u;  // frame/recipe.h
-const uint SHADE_GGX = 0u, SHADE_LAMBERT = 1u;
-
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0, scalar) readonly buffer View { ViewConstants view; };
-layout(binding = 1, scalar) readonly buffer Lights { FrameLight lights[]; };
-layout(binding = 2, scalar) readonly buffer Maps { ShadowMap maps[]; };
-layout(binding = 3, scalar) readonly buffer Views { ShadowView views[]; };
-layout(binding = 4) uniform usampler2D surface_image;
-layout(binding = 5) uniform sampler2D depth_image;
-layout(binding = 6) uniform samplerCubeArrayShadow cubes;
-layout(binding = 7) uniform sampler2DArrayShadow layers;
-layout(binding = 8, rgba32f) uniform image2D radiance_image;
-layout(push_constant, scalar) uniform Push { ShadeConstants round; };
-
-#include "shadows/filter/hard.glsl"
-#include "shadows/filter/pcf.glsl"
-
-float visibility(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
-  if (filter_answer == FILTER_PCF) return pcf_visibility(map, p, n, pixel);
-  return hard_visibility(map, p, n);
-}
 
 // What arrives at p and from where; zero where the light does not reach.
 struct Incoming {
@@ -51,39 +25,36 @@ vec3 reflected(Surface s, vec3 to_eye, vec3 to_light, float n_dot_l) {
   return shade_answer == SHADE_LAMBERT ? lambert(s) : ggx(s, to_eye, to_light, n_dot_l);
 }
 
-vec3 world_position(ivec2 pixel, float depth) {
-  vec2 clip = (vec2(pixel) + 0.5) / view.size_px * 2.0 - 1.0;
-  vec4 p = mat4(view.world_from_clip[0], view.world_from_clip[1], view.world_from_clip[2], view.world_from_clip[3]) *
-           vec4(clip, depth, 1.0);
-  return p.xyz / p.w;
+// A light's share at p, before visibility.
+vec3 unshadowed(FrameLight light, Surface s, vec3 p, vec3 to_eye) {
+  Incoming light_in = incoming(light, p);
+  float n_dot_l = dot(s.normal, light_in.to_light);
+  bool reaches = largest(light_in.illuminance) > 0.0 && n_dot_l > 0.0 && dot(s.geometric_normal, light_in.to_light) > 0.0;
+  if (!reaches) return vec3(0.0);
+  return light_in.illuminance * n_dot_l * reflected(s, to_eye, light_in.to_light, n_dot_l);
 }
 
-// The light of one map's lights at p, before visibility.
-vec3 unshadowed(ShadowMap map, Surface s, vec3 p, vec3 to_eye) {
-  vec3 sum = vec3(0.0);
-  uint i = map.first_light;
-  do {
-    Incoming light_in = incoming(lights[i], p);
-    float n_dot_l = dot(s.normal, light_in.to_light);
-    bool reaches = largest(light_in.illuminance) > 0.0 && n_dot_l > 0.0 && dot(s.geometric_normal, light_in.to_light) > 0.0;
-    if (reaches) sum += light_in.illuminance * n_dot_l * reflected(s, to_eye, light_in.to_light, n_dot_l);
-  } while (++i < map.first_light + map.light_count);
-  return sum;
+float delivered_visibility(ShadowMap map, vec3 p, vec3 n, uvec2 pixel) {
+  if (deliver_answer == DELIVER_INLINE) return visibility(map, p, n, vec2(pixel));
+  uint place = visibility_place(map, pixel);
+  return place != NONE && in_range(map, p) ? float(uint(visibility_bytes[place])) / 255.0 : 0.0;
 }
 
 // Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked.
-vec3 lit_by_round(Surface s, vec3 p, vec2 pixel) {
+vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
   vec3 to_eye = normalize(view.eye_ws - p);
   vec3 sum = vec3(0.0);
-  uint i = round.first_map;
-  do {
-    ShadowMap map = maps[i];
-    bool in_range = map.is_directional != 0u || distance(p, map.center_ws) < map.range_m;  // LightCluster §3.2.2: C_att
-    if (in_range) {
-      vec3 light = unshadowed(map, s, p, to_eye);
-      if (largest(light) > 0.0) sum += visibility(map, p, s.geometric_normal, pixel) * light;
-    }
-  } while (++i < round.first_map + round.map_count);
+  uint light = next_light(round.first_light);
+  if (light < round.light_end) do {
+    ShadowMap map = maps[lights[light].map];
+    uint map_end = map.first_light + map.light_count;
+    vec3 of_map = vec3(0.0);
+    do {
+      of_map += unshadowed(lights[light], s, p, to_eye);
+      light = next_light(light + 1u);
+    } while (light < map_end);
+    if (largest(of_map) > 0.0) sum += delivered_visibility(map, p, s.geometric_normal, pixel) * of_map;
+  } while (light < round.light_end);
   return sum;
 }
 
@@ -93,8 +64,8 @@ void main() {
   float depth = texelFetch(depth_image, pixel, 0).r;
   vec4 radiance = imageLoad(radiance_image, pixel);
   bool unlit = radiance.a == 0.0;
-  if (depth == 0.0 || unlit || round.map_count == 0u) return;
+  if (depth == 0.0 || unlit || round.first_light == round.light_end) return;
   Surface s = unpack_surface(texelFetch(surface_image, pixel, 0));
-  vec3 p = world_position(pixel, depth);
-  imageStore(radiance_image, pixel, vec4(radiance.rgb + lit_by_round(s, p, vec2(pixel)), radiance.a));
+  vec3 p = world_position(view, vec2(pixel) + 0.5, depth);
+  imageStore(radiance_image, pixel, vec4(radiance.rgb + lit_by_round(s, p, uvec2(pixel)), radiance.a));
 }

@@ -3,12 +3,12 @@
 
 #include "frame_schema.h"
 #include "shaders/shade_comp.h"
+#include "shaders/visibility_comp.h"
 
 namespace chandelier {
 namespace {
 
-constexpr uint32_t shade_answers = 2;
-constexpr uint32_t filter_answers = 2;
+enum class Shader : uint32_t { visibility, shade };
 
 // Outside a cascade nothing casts: the border is as far as depth goes.
 gpu::Owned<VkSampler> compare_sampler(const gpu::Device& device, VkFilter filter) {
@@ -23,40 +23,71 @@ gpu::Owned<VkSampler> compare_sampler(const gpu::Device& device, VkFilter filter
                                     .borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK});
 }
 
+// Made when first needed: few of the combinations are ever drawn with.
+const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
+                                  const Recipe& recipe) {
+  const std::array<uint32_t, 4> answers{static_cast<uint32_t>(recipe.filter), static_cast<uint32_t>(recipe.shade),
+                                        static_cast<uint32_t>(recipe.lookup), static_cast<uint32_t>(recipe.deliver)};
+  const std::array<uint32_t, 5> key{static_cast<uint32_t>(shader), answers[0], answers[1], answers[2], answers[3]};
+  const auto found = pipelines.made.find(key);
+  if (found != pipelines.made.end()) return found->second;
+  constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  constexpr auto image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  const gpu::LayoutInfo layout{.bindings = {buffer, buffer, buffer, buffer, image, image, image, image,
+                                            VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, buffer, buffer},
+                               .push_bytes = sizeof(frame::ShadeConstants)};
+  const std::span<const uint32_t> spirv =
+      shader == Shader::visibility ? std::span<const uint32_t>(visibility_comp) : std::span<const uint32_t>(shade_comp);
+  return pipelines.made
+      .emplace(key, gpu::make_compute_pipeline(device, layout, spirv, {answers.begin(), answers.end()}))
+      .first->second;
+}
+
+void record_over_picture(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
+                         const Recipe& recipe, const ShadeInput& input, const CubeArray& store,
+                         const Targets& targets) {
+  const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, shader, recipe);
+  const VkSampler compare = recipe.filter == Filter::hard ? pipelines.nearest_compare : pipelines.linear_compare;
+  // Every binding has to be something, read or not.
+  const gpu::Buffer& tile_words = recipe.lookup == Lookup::tiles ? input.tiles.words : input.lights;
+  const gpu::Buffer& visibility = recipe.deliver == Deliver::textures ? input.visibility : input.lights;
+  gpu::bind(cmd, pipeline,
+            {gpu::storage(input.view), gpu::storage(input.lights), gpu::storage(input.maps), gpu::storage(input.views),
+             gpu::sampled(targets.surface.view, pipelines.texel_sampler),
+             gpu::sampled(targets.depth.view, pipelines.texel_sampler), gpu::sampled(store.cubes, compare),
+             gpu::sampled(store.depth.view, compare), gpu::storage_image(targets.radiance), gpu::storage(tile_words),
+             gpu::storage(visibility)});
+  gpu::push_constants(cmd, pipeline,
+                      frame::ShadeConstants{.first_light = input.first_light,
+                                            .light_end = input.first_light + input.light_count,
+                                            .tiles_x = input.tiles.tiles_x,
+                                            .words_per_tile = input.tiles.words_per_tile});
+  vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
+}
+
 }  // namespace
 
 ShadePipelines make_shade_pipelines(const gpu::Device& device) {
-  constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  constexpr auto image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-  const gpu::LayoutInfo layout{
-      .bindings = {buffer, buffer, buffer, buffer, image, image, image, image, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-      .push_bytes = sizeof(frame::ShadeConstants)};
   ShadePipelines pipelines;
-  for (uint32_t filter = 0; filter < filter_answers; ++filter)
-    for (uint32_t shade = 0; shade < shade_answers; ++shade)
-      pipelines.by_filter_and_shade.push_back(gpu::make_compute_pipeline(device, layout, shade_comp, {filter, shade}));
-  pipelines.texel_sampler = gpu::make_sampler(device, {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                                       .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                                       .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                                       .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
+  pipelines.texel_sampler = make_texel_sampler(device);
   pipelines.nearest_compare = compare_sampler(device, VK_FILTER_NEAREST);
   pipelines.linear_compare = compare_sampler(device, VK_FILTER_LINEAR);
   return pipelines;
 }
 
-void record_shade(VkCommandBuffer cmd, const ShadePipelines& pipelines, const Recipe& recipe, const ShadeInput& input,
-                  const CubeArray& store, const Targets& targets) {
-  const auto& pipeline = pipelines.by_filter_and_shade[static_cast<uint32_t>(recipe.filter) * shade_answers +
-                                                       static_cast<uint32_t>(recipe.shade)];
-  const VkSampler compare = recipe.filter == Filter::hard ? pipelines.nearest_compare : pipelines.linear_compare;
+void record_visibility(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
+                       const ShadeInput& input, const CubeArray& store, const Targets& targets) {
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE,
+                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE);
+  record_over_picture(cmd, device, pipelines, Shader::visibility, recipe, input, store, targets);
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+}
+
+void record_shade(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
+                  const ShadeInput& input, const CubeArray& store, const Targets& targets) {
   gpu::image_barrier(cmd, targets.radiance, use::storage, use::storage);
-  gpu::bind(cmd, pipeline,
-            {gpu::storage(input.view), gpu::storage(input.lights), gpu::storage(input.maps), gpu::storage(input.views),
-             gpu::sampled(targets.surface.view, pipelines.texel_sampler),
-             gpu::sampled(targets.depth.view, pipelines.texel_sampler), gpu::sampled(store.cubes, compare),
-             gpu::sampled(store.depth.view, compare), gpu::storage_image(targets.radiance)});
-  gpu::push_constants(cmd, pipeline, frame::ShadeConstants{.first_map = input.first_map, .map_count = input.map_count});
-  vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
+  record_over_picture(cmd, device, pipelines, Shader::shade, recipe, input, store, targets);
 }
 
 }  // namespace chandelier

@@ -1,31 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shade stage: adds the light of one round, filtered visibility included.
+// The filter, deliver and shade stages of one round: fills visibility textures where the recipe wants them, and adds
+// light.
 #pragma once
+
+#include <array>
+#include <map>
 
 #include "frame/recipe.h"
 #include "frame/targets.h"
 #include "gpu/pipelines.h"
+#include "lookup/tiles.h"
 #include "shadows/store/cube_array.h"
 
 namespace chandelier {
 
 struct ShadePipelines {
-  std::vector<gpu::Pipeline> by_filter_and_shade;  // filter * 2 + shade
-  gpu::Owned<VkSampler> texel_sampler;             // for targets
-  gpu::Owned<VkSampler> nearest_compare;           // filter hard
-  gpu::Owned<VkSampler> linear_compare;            // other filters
+  std::map<std::array<uint32_t, 5>, gpu::Pipeline> made;  // by shader and the answers it is specialized for
+  gpu::Owned<VkSampler> texel_sampler;                    // for targets
+  gpu::Owned<VkSampler> nearest_compare;                  // filter hard
+  gpu::Owned<VkSampler> linear_compare;                   // other filters
 };
 ShadePipelines make_shade_pipelines(const gpu::Device& device);
 
 struct ShadeInput {
-  const gpu::Buffer& view;    // frame ViewConstants
-  const gpu::Buffer& lights;  // frame FrameLight
-  const gpu::Buffer& maps;    // frame ShadowMap
-  const gpu::Buffer& views;   // frame ShadowView
-  uint32_t first_map;
-  uint32_t map_count;
+  const gpu::Buffer& view;        // frame ViewConstants
+  const gpu::Buffer& lights;      // frame FrameLight
+  const gpu::Buffer& maps;        // frame ShadowMap
+  const gpu::Buffer& views;       // frame ShadowView
+  const gpu::Buffer& visibility;  // bytes of the round's visibility textures; unused where delivery is inline
+  const TileLists& tiles;         // unused where lookup is all
+  uint32_t first_light;
+  uint32_t light_count;
 };
-void record_shade(VkCommandBuffer cmd, const ShadePipelines& pipelines, const Recipe& recipe, const ShadeInput& input,
-                  const CubeArray& store, const Targets& targets);
+/// Filters the round's maps into `input.visibility`, which shading may read afterwards.
+void record_visibility(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
+                       const ShadeInput& input, const CubeArray& store, const Targets& targets);
+void record_shade(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
+                  const ShadeInput& input, const CubeArray& store, const Targets& targets);
 
 }  // namespace chandelier

@@ -142,7 +142,7 @@ class CubeLookupTest : public GpuTest {
     maps.list = select_lights(scene.lights, {}, camera, 1.0f);
     maps.views = project_lights(maps.list, camera, 1.0f, scene.bounds, face_size_px);
     const auto count = static_cast<uint32_t>(maps.list.maps.size());
-    const auto rounds = plan_rounds(maps.list, maps.views, count, 1u << 20);
+    const auto rounds = plan_rounds(maps.list, maps.views, {.maps = count});
     EXPECT_EQ(rounds.size(), 1u);
     const auto view_count = static_cast<uint32_t>(maps.views.size());
     maps.store = make_cube_array(device(), face_size_px, count);

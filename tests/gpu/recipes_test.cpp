@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole frames with different recipes: which must give the same picture, and what a frame must bear.
+#include <algorithm>
 #include <iostream>
 #include <random>
 
@@ -46,7 +47,10 @@ Scene small_room(uint32_t lights) {
 }
 
 RenderSettings room_settings(const Recipe& recipe) {
-  return settings_for(look({1.5f, 2.2f, 4.5f}, {0, 0.8f, 0}, 0.9f), 128, 96, recipe);
+  RenderSettings settings = settings_for(look({1.5f, 2.2f, 4.5f}, {0, 0.8f, 0}, 0.9f), 128, 96, recipe);
+  // For filter rays: everything is lit.
+  settings.visibility = [](const VisibilityQuery& query) { std::ranges::fill(query.visibility, uint8_t{255}); };
+  return settings;
 }
 
 Recipe recipe_with(Select select, Filter filter, float d_init_m) {
@@ -119,6 +123,75 @@ TEST_F(RecipesTest, MapsThatTakeTurnsInTheStoreGiveTheSamePicture) {
       for (size_t i = 0; i < at_once.picture.radiance.size(); ++i)
         ASSERT_NEAR(at_once.picture.radiance[i], in_turns.picture.radiance[i],
                     1e-6f + 1e-5f * at_once.picture.radiance[i]);
+    }
+  }
+}
+
+// More lights than a word of a tile has bits, and than a work group has threads; a picture that ends within a tile.
+TEST_F(RecipesTest, TilesGiveThePictureOfAllLights) {
+  for (const uint32_t lights : {5u, 70u, 600u}) {
+    Renderer renderer(device(), small_room(lights).open());
+    for (const Deliver deliver : {Deliver::inlined, Deliver::textures}) {
+      RenderSettings settings = room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.4f));
+      settings.width = 117;
+      settings.height = 83;
+      settings.recipe.face_size_px = 32;
+      settings.recipe.deliver = deliver;
+      settings.recipe.lookup = Lookup::all;
+      const Frame all = frame(renderer, settings);
+      settings.recipe.lookup = Lookup::tiles;
+      expect_same(all, frame(renderer, settings));
+      EXPECT_GT(brightness(all.picture), 0.0);
+    }
+  }
+}
+
+// A byte holds hard visibility exactly, and filtered visibility to half a 255th of each light's share.
+TEST_F(RecipesTest, VisibilityTexturesGiveThePictureOfInlineVisibility) {
+  Renderer renderer(device(), small_room(20).open());
+  for (const Filter filter : {Filter::hard, Filter::pcf}) {
+    RenderSettings settings = room_settings(recipe_with(Select::per_light, filter, 0));
+    const Frame inlined = frame(renderer, settings);
+    settings.recipe.deliver = Deliver::textures;
+    const Frame textures = frame(renderer, settings);
+    if (filter == Filter::hard) expect_same(inlined, textures);
+    for (size_t i = 0; i < inlined.picture.radiance.size(); ++i)
+      ASSERT_NEAR(inlined.picture.radiance[i], textures.picture.radiance[i], 0.003f);
+    EXPECT_EQ(inlined.stats.visibility_bytes, 0u);
+    EXPECT_GT(textures.stats.visibility_bytes, 0u);
+    EXPECT_LE(textures.stats.visibility_bytes, textures.stats.shadow_maps * settings.width * settings.height);
+  }
+}
+
+// What is asked are the points that the camera sees, and the answer is what shading uses.
+TEST_F(RecipesTest, RaysAreAskedAboutEveryVisiblePoint) {
+  Scene scene;
+  scene.add(level_square({0, 0, 0}, 50.0f), scene.add_material(plain_material(glm::vec3(0.5f))));
+  scene.lights = {point_light({0, 2, 0}, 10, 5), directional_light({0, -1, 0}, 1)};
+  Renderer renderer(device(), scene.open());
+  RenderSettings settings = room_settings(presets().back().recipe);
+  ASSERT_EQ(settings.recipe.filter, Filter::rays);
+  const Frame lit = frame(renderer, settings);
+  uint32_t asked = 0;
+  settings.visibility = [&](const VisibilityQuery& query) {
+    ++asked;
+    for (size_t i = 0; i < query.points.size(); ++i) {
+      const SurfacePoint& point = query.points[i];
+      const bool seen = point.normal_ws != glm::vec3(0.0f);
+      EXPECT_NEAR(point.position_ws.y, 0.0f, 1e-4f);
+      EXPECT_NEAR(point.normal_ws.y, seen ? 1.0f : 0.0f, 1e-3f);
+      query.visibility[i] = point.position_ws.x > 0.0f ? 255 : 0;
+    }
+  };
+  const Frame half = frame(renderer, settings);
+  EXPECT_EQ(asked, 2u);
+  EXPECT_EQ(half.stats.shadow_maps, 0u);
+  for (uint32_t y = 0; y < settings.height; y += 5) {
+    for (uint32_t x = 0; x < settings.width; x += 5) {
+      if (pixel_direction(settings, x, y).y > -0.05f) continue;
+      const float at = floor_point(settings, x, y).x;
+      if (std::abs(at) < 0.01f) continue;
+      EXPECT_EQ(radiance_at(half.picture, x, y), at > 0.0f ? radiance_at(lit.picture, x, y) : glm::vec3(0.0f));
     }
   }
 }
@@ -276,6 +349,11 @@ TEST_F(RecipesTest, WhatCannotBeRenderedIsRefused) {
   EXPECT_THROW(renderer.draw(settings), std::invalid_argument);
   settings.recipe.d_init_m = 0.0f;
   EXPECT_NO_THROW(renderer.draw(settings));
+  settings.recipe = recipe_with(Select::light_clusters, Filter::rays, 0.5f);
+  EXPECT_THROW(renderer.draw(settings), std::invalid_argument);
+  settings.recipe = presets().back().recipe;
+  settings.visibility = nullptr;
+  EXPECT_THROW(renderer.draw(settings), std::invalid_argument);
   settings.width = 0;
   EXPECT_THROW(renderer.draw(settings), std::invalid_argument);
   settings.width = 1u << 30;

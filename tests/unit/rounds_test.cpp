@@ -26,7 +26,7 @@ Planned plan(const std::vector<uint32_t>& views_of_maps, uint32_t cubes, uint64_
     planned.list.maps.push_back({.first_view = static_cast<uint32_t>(planned.views.size()), .view_count = count});
     for (uint32_t face = 0; face < count; ++face) planned.views.push_back({.layer = face});
   }
-  planned.rounds = plan_rounds(planned.list, planned.views, cubes, max_views);
+  planned.rounds = plan_rounds(planned.list, planned.views, {.maps = cubes, .views = max_views});
   return planned;
 }
 
@@ -53,6 +53,27 @@ void expect_sound(const Planned& planned, uint32_t cubes, uint64_t max_views) {
   }
   EXPECT_EQ(map, planned.list.maps.size());
   EXPECT_EQ(view, planned.views.size());
+}
+
+// Visibility textures lie one after the other and never exceed the limit, unless one alone does.
+TEST(RoundsTest, VisibilityTexturesStayWithinTheirLimit) {
+  LightList list;
+  std::vector<frame::ShadowView> views;
+  for (const uint32_t rows : {3u, 5u, 0u, 9u, 20u, 1u, 1u})
+    list.maps.push_back({.first_light = static_cast<uint32_t>(list.maps.size()),
+                         .light_count = 1,
+                         .rect_width = 10,
+                         .rect_height = rows});
+  const auto rounds = plan_rounds(list, views, {.maps = 100, .visibility_bytes = 100});
+  ASSERT_EQ(rounds.size(), 4u);
+  EXPECT_EQ(rounds[0].map_count, 3u);
+  EXPECT_EQ(rounds[0].visibility_bytes, 80u);
+  EXPECT_EQ(list.maps[1].first_visibility, 30u);
+  EXPECT_EQ(list.maps[2].first_visibility, 80u);
+  EXPECT_EQ(rounds[2].visibility_bytes, 200u);  // alone
+  EXPECT_EQ(rounds[3].first_light, 5u);
+  EXPECT_EQ(rounds[3].light_count, 2u);
+  EXPECT_EQ(list.maps[6].first_visibility, 10u);
 }
 
 TEST(RoundsTest, NothingNeedsNoRound) {

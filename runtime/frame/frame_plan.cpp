@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame/frame_plan.h"
+
+#include <chrono>
+
+#include "shadows/deliver/visibility_textures.h"
+#include "shadows/project/shadow_views.h"
+
+namespace chandelier {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+std::array<glm::vec4, 4> columns(const glm::mat4& m) {
+  return {m[0], m[1], m[2], m[3]};
+}
+
+frame::ViewConstants view_constants(const RenderSettings& settings, float aspect) {
+  const glm::mat4 clip = clip_from_world(settings.camera, aspect);
+  return {.clip_from_world = columns(clip),
+          .world_from_clip = columns(glm::inverse(clip)),
+          .eye_ws = settings.camera.eye_ws,
+          .near_m = settings.camera.znear_m,
+          .forward_ws = axes_of(settings.camera).forward,
+          .ambient = settings.ambient,
+          .size_px = {static_cast<float>(settings.width), static_cast<float>(settings.height)},
+          .face_size_px = static_cast<float>(settings.recipe.face_size_px)};
+}
+
+}  // namespace
+
+FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
+                     const RoundLimits& limits) {
+  const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+  FramePlan plan{.recipe = settings.recipe};
+  auto start = Clock::now();
+  plan.list = select_lights(lights, plan.recipe, settings.camera, aspect);
+  plan.select_ms = ms_since(start);
+
+  start = Clock::now();
+  if (plan.recipe.filter != Filter::rays)
+    plan.views = project_lights(plan.list, settings.camera, aspect, bounds, plan.recipe.face_size_px);
+  if (plan.recipe.deliver == Deliver::textures)
+    place_visibility_rects(plan.list, settings.camera, settings.width, settings.height);
+  plan.rounds = plan_rounds(plan.list, plan.views, limits);
+  plan.view = view_constants(settings, aspect);
+  plan.views.push_back({.clip_from_world = plan.view.clip_from_world});
+  plan.project_ms = ms_since(start);
+  return plan;
+}
+
+}  // namespace chandelier

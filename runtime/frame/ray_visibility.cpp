@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame/ray_visibility.h"
+
+#include <cstring>
+
+#include "octahedral.h"
+#include "shadows/deliver/visibility_textures.h"
+
+namespace chandelier {
+
+gpu::Buffer make_surface_readback(const gpu::Device& device, uint32_t width, uint32_t height) {
+  return gpu::make_buffer(device, VkDeviceSize{20} * width * height, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                          gpu::Memory::readback);
+}
+
+void record_read_surfaces(VkCommandBuffer cmd, const Targets& targets, const gpu::Buffer& readback) {
+  VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                         .imageExtent = {targets.width, targets.height, 1}};
+  gpu::image_barrier(cmd, targets.surface, use::sampled, use::copied);
+  vkCmdCopyImageToBuffer(cmd, targets.surface.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1, &copy);
+  gpu::image_barrier(cmd, targets.surface, use::copied, use::sampled);
+  copy.imageSubresource.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
+  copy.bufferOffset = VkDeviceSize{16} * targets.width * targets.height;
+  gpu::image_barrier(cmd, targets.depth, use::sampled, use::copied);
+  vkCmdCopyImageToBuffer(cmd, targets.depth.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1, &copy);
+  gpu::image_barrier(cmd, targets.depth, use::copied, use::sampled);
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+}
+
+// As shading/world_position.glsl and shading/surface.glsl.
+std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const frame::ViewConstants& view) {
+  const auto width = static_cast<uint32_t>(view.size_px.x);
+  const auto height = static_cast<uint32_t>(view.size_px.y);
+  const glm::mat4 world_from_clip(view.world_from_clip[0], view.world_from_clip[1], view.world_from_clip[2],
+                                  view.world_from_clip[3]);
+  const size_t pixels = size_t{width} * height;
+  std::vector<SurfacePoint> points(pixels, {glm::vec3(0.0f), glm::vec3(0.0f)});
+  for (size_t i = 0; i < pixels; ++i) {
+    float depth = 0.0f;
+    uint32_t normal_bits = 0;
+    std::memcpy(&depth, readback.mapped + 16 * pixels + 4 * i, sizeof depth);
+    std::memcpy(&normal_bits, readback.mapped + 16 * i + 4, sizeof normal_bits);
+    if (depth == 0.0f) continue;
+    const glm::vec2 pixel(static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f);
+    const glm::vec4 p = world_from_clip * glm::vec4(pixel / view.size_px * 2.0f - 1.0f, depth, 1.0f);
+    points[i] = {glm::vec3(p) / p.w, pack::decode_normal(normal_bits)};
+  }
+  return points;
+}
+
+void fill_visibility(const LightList& list, const Round& round, std::span<const SurfacePoint> points, uint32_t width,
+                     const VisibilitySource& source, std::span<uint8_t> bytes) {
+  std::vector<SurfacePoint> in_rect;
+  for (uint32_t m = round.first_map; m < round.first_map + round.map_count; ++m) {
+    const frame::ShadowMap& map = list.maps[m];
+    in_rect.clear();
+    for (uint32_t y = map.rect_y; y < map.rect_y + map.rect_height; ++y) {
+      const auto row = points.subspan(size_t{y} * width + map.rect_x, map.rect_width);
+      in_rect.insert(in_rect.end(), row.begin(), row.end());
+    }
+    source({list.lights[map.first_light], in_rect, bytes.subspan(map.first_visibility, visibility_bytes(map))});
+  }
+}
+
+}  // namespace chandelier

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Filter answer `rays`: reads back what the camera sees, and has visibility textures filled by the caller.
+#pragma once
+
+#include "frame/frame_plan.h"
+#include "frame/targets.h"
+
+namespace chandelier {
+
+/// Room for record_read_surfaces().
+gpu::Buffer make_surface_readback(const gpu::Device& device, uint32_t width, uint32_t height);
+/// Copies depth and surface, which must be ready to be sampled and are so again afterwards.
+void record_read_surfaces(VkCommandBuffer cmd, const Targets& targets, const gpu::Buffer& readback);
+/// One point a pixel, rows from the top, where shading has them too.
+std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const frame::ViewConstants& view);
+
+/// Asks for the visibility of every light of a round; each must have a map of its own. `bytes` holds the round's
+/// textures.
+void fill_visibility(const LightList& list, const Round& round, std::span<const SurfacePoint> points, uint32_t width,
+                     const VisibilitySource& source, std::span<uint8_t> bytes);
+
+}  // namespace chandelier

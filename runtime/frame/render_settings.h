@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a frame is asked to be.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "frame/camera.h"
+#include "frame/recipe.h"
+#include "frame/visibility_query.h"
+
+namespace chandelier {
+
+struct RenderSettings {
+  Recipe recipe;
+  Camera camera;
+  uint32_t width = 1280;
+  uint32_t height = 720;
+  float ambient = 0.0f;              // radiance from everywhere, for scenes that would be black without
+  std::optional<float> exposure_ev;  // stops; absent: from the picture's own brightness
+  VisibilitySource visibility;       // needed by filter rays, unused by others
+};
+
+}  // namespace chandelier

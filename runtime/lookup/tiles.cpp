@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lookup/tiles.h"
+
+#include <algorithm>
+
+#include "shaders/tiles_comp.h"
+
+namespace chandelier {
+
+TilePipeline make_tile_pipeline(const gpu::Device& device) {
+  constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  return {gpu::make_compute_pipeline(device,
+                                     {.bindings = {buffer, buffer, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, buffer},
+                                      .push_bytes = sizeof(frame::TileConstants)},
+                                     tiles_comp),
+          make_texel_sampler(device)};
+}
+
+void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, TileLists& lists) {
+  lists.tiles_x = (width + frame::tile_size_px - 1) / frame::tile_size_px;
+  lists.tiles_y = (height + frame::tile_size_px - 1) / frame::tile_size_px;
+  lists.words_per_tile = static_cast<uint32_t>(std::max<size_t>(1, (lights + 31) / 32));
+  const uint64_t bytes = uint64_t{lists.tiles_x} * lists.tiles_y * lists.words_per_tile * sizeof(frame::TileWord);
+  if (bytes > device.limits.maxStorageBufferRange)
+    throw gpu::Error("too many lights in view for lookup tiles on this device (" + std::to_string(lights) +
+                     "); use lookup all or a smaller picture");
+  if (lists.words.size_bytes < bytes)
+    lists.words = gpu::make_buffer(device, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::device);
+}
+
+void record_tiles(VkCommandBuffer cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,
+                  size_t light_count, const Targets& targets, const TileLists& lists) {
+  gpu::bind(cmd, tiles.pipeline,
+            {gpu::storage(view), gpu::storage(lights), gpu::sampled(targets.depth.view, tiles.texel_sampler),
+             gpu::storage(lists.words)});
+  gpu::push_constants(
+      cmd, tiles.pipeline,
+      frame::TileConstants{.light_count = static_cast<uint32_t>(light_count), .words_per_tile = lists.words_per_tile});
+  vkCmdDispatch(cmd, lists.tiles_x, lists.tiles_y, 1);
+  gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
+}
+
+}  // namespace chandelier

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Deliver answer `textures` (LightCluster §3.2.2): one byte a pixel and map, read later by shade.comp. Only the rectangle
+// that a map's lights can reach is kept, and only pixels within C_att are filtered.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shading/round.glsl"
+
+// The next light that belongs to another map than `light`.
+uint next_map(uint light) {
+  ShadowMap map = maps[lights[light].map];
+  return next_light(map.first_light + map.light_count);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(vec2(pixel), view.size_px))) return;
+  float depth = texelFetch(depth_image, pixel, 0).r;
+  if (depth == 0.0 || round.first_light == round.light_end) return;
+  vec3 n = unpack_surface(texelFetch(surface_image, pixel, 0)).geometric_normal;
+  vec3 p = world_position(view, vec2(pixel) + 0.5, depth);
+  uint light = next_light(round.first_light);
+  if (light < round.light_end) do {
+    ShadowMap map = maps[lights[light].map];
+    uint place = visibility_place(map, uvec2(pixel));
+    if (place != NONE && in_range(map, p))
+      visibility_bytes[place] = uint8_t(uint(visibility(map, p, n, vec2(pixel)) * 255.0 + 0.5));
+    light = next_map(light);
+  } while (light < round.light_end);
+}
