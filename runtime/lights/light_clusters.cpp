@@ -1,90 +1,215 @@
 // SPDX-License-Identifier: Apache-2.0
-// LightCluster §3.1: minimum-distance clustering of point lights.
+// LightCluster §3.1: minimum-distance clustering of lights.
 #include "lights/light_clusters.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
-#include <numeric>
+
+#include "lights/point_tree.h"
 
 namespace chandelier::lights {
 namespace {
 
-struct Center {
-  uint32_t light;
-  glm::vec3 position_ws;
-  float d_min_m;
+float to_float(double metres) {
+  return static_cast<float>(std::min(metres, double{std::numeric_limits<float>::max()}));
+}
+
+struct Candidate {
+  double distance_m;
+  uint32_t rank;  // in the order of selection
+  uint32_t center;
+
+  bool before(const Candidate& other) const {
+    return distance_m != other.distance_m ? distance_m < other.distance_m : rank < other.rank;
+  }
 };
 
-std::vector<uint32_t> by_descending_range(std::span<const ClusterLight> lights) {
-  std::vector<uint32_t> order(lights.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](uint32_t a, uint32_t b) { return lights[a].range_m > lights[b].range_m; });
+class Selection {
+ public:
+  Selection(std::span<const ClusterLight> lights, const ClusterSettings& settings, const Blocked& blocked)
+      : lights_(lights),
+        settings_(settings),
+        blocked_(blocked),
+        order_(selection_order()),
+        rank_(lights.size(), none),
+        nearest_(lights.size()) {
+    d_min_.reserve(lights.size());
+    for (const ClusterLight& light : lights) d_min_.push_back(scaled_d_min(settings, light.position_ws));
+    select_centers();
+    join_nearest();
+  }
+
+  LightClusters clusters() const;
+
+ private:
+  static constexpr uint32_t none = no_center;
+
+  bool clings() const { return settings_.stability > 0.0f && !settings_.previous_centers.empty(); }
+  bool was_center(uint32_t light) const { return clings() && settings_.previous_centers[light] == light; }
+  // By how much d_min counts for a light that might become a centre.
+  double d_min_factor(uint32_t light) const {
+    if (!clings()) return 1.0;
+    return was_center(light) ? 1.0 - double{settings_.stability} : 1.0 + double{settings_.stability};
+  }
+  bool is_blocked(uint32_t light, uint32_t center) const { return blocked_ && blocked_(light, center); }
+  double distance_m(uint32_t light, uint32_t center) const {
+    return metric_distance_m(lights_[light], lights_[center].position_ws);
+  }
+
+  std::vector<uint32_t> selection_order() const;
+  template <typename Which>
+  PointTree tree_of(Which which) const;
+  void select_centers();
+  void cover(const PointTree& lights, double reach, uint32_t center);
+  void join_nearest();
+  bool is_nearest_of_all(const Candidate& nearest, uint32_t light) const;
+  Candidate nearest_center(const PointTree& centers, uint32_t light) const;
+
+  const std::span<const ClusterLight> lights_;
+  const ClusterSettings& settings_;
+  const Blocked& blocked_;
+  const std::vector<uint32_t> order_;  // without the lights that have a centre of their own
+  std::vector<float> d_min_;           // that each light would have as a centre
+  std::vector<uint32_t> rank_;         // of each light that is a centre
+  std::vector<Candidate> nearest_;
+};
+
+// Lights that were centres, the others; within both by descending range, ties by index. The bits of floats that are not
+// negative rise with their values.
+std::vector<uint32_t> Selection::selection_order() const {
+  std::vector<uint64_t> keys;
+  keys.reserve(lights_.size());
+  for (uint32_t light = 0; light < lights_.size(); ++light) {
+    if (has_own_center(lights_[light], settings_)) continue;
+    const uint32_t falling = 0x7FFFFFFFu - std::bit_cast<uint32_t>(lights_[light].range_m + 0.0f);
+    keys.push_back(uint64_t{!was_center(light)} << 63 | uint64_t{falling} << 32 | light);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<uint32_t> order;
+  order.reserve(keys.size());
+  for (const uint64_t key : keys) order.push_back(static_cast<uint32_t>(key));
   return order;
 }
 
-// §3.1.2
-std::vector<Center> select_centers(std::span<const ClusterLight> lights, std::span<const uint32_t> order,
-                                   const ClusterSettings& settings) {
-  std::vector<Center> centers;
-  for (uint32_t light : order) {
-    const glm::vec3 position = lights[light].position_ws;
-    const bool near_one = std::any_of(centers.begin(), centers.end(), [&](const Center& center) {
-      return glm::distance(position, center.position_ws) <= center.d_min_m;
-    });
-    if (!near_one) centers.push_back({light, position, scaled_d_min(settings, position)});
+template <typename Which>
+PointTree Selection::tree_of(Which which) const {
+  std::vector<PointTree::Point> points;
+  for (const uint32_t light : order_)
+    if (which(light)) points.push_back({lights_[light].position_ws, light});
+  return PointTree(std::move(points));
+}
+
+// §3.1.2, from the centres' side: each covers the lights within its d_min, and who is reached uncovered is a centre.
+void Selection::select_centers() {
+  const PointTree round = tree_of([&](uint32_t light) { return reach(lights_[light]) == 1.0; });
+  const PointTree narrow = tree_of([&](uint32_t light) { return reach(lights_[light]) > 1.0; });
+  for (uint32_t light = 0; light < lights_.size(); ++light) nearest_[light] = {0.0, none, light};  // own centres
+  for (const uint32_t light : order_) nearest_[light] = {std::numeric_limits<double>::infinity(), none, none};
+  for (uint32_t i = 0; i < order_.size(); ++i) {
+    const uint32_t light = order_[i];
+    if (nearest_[light].center != none) continue;
+    rank_[light] = i;
+    nearest_[light] = {0.0, i, light};
+    cover(round, 1.0, light);
+    cover(narrow, 2.0, light);
   }
-  return centers;
+}
+
+void Selection::cover(const PointTree& lights, double reach, uint32_t center) {
+  const double d_min = d_min_[center];
+  const double largest = clings() ? (1.0 + double{settings_.stability}) * d_min : d_min;
+  lights.visit_near(lights_[center].position_ws, SquaredRadius(reach * largest), [&](uint32_t light) {
+    const Candidate candidate{distance_m(light, center), rank_[center], center};
+    const bool covers = candidate.distance_m <= d_min_factor(light) * d_min;
+    if (covers && candidate.before(nearest_[light]) && !is_blocked(light, center)) nearest_[light] = candidate;
+  });
+}
+
+// d_min changes by no more than `slope` per metre. A centre that is nearer to the light than `nearest` has a d_min of
+// at least the light's own less slope * straight distance: where that is more than its distance, it covers the light,
+// and was met when it was selected.
+bool Selection::is_nearest_of_all(const Candidate& nearest, uint32_t light) const {
+  const double slope =
+      settings_.scaling == DistanceScaling::none ? 0.0 : double{settings_.d_init_m} / double{settings_.z_far_m};
+  const double own_d_min = 0.99999 * d_min_[light];  // for rounding's sake
+  const double least_d_min = own_d_min - slope * reach(lights_[light]) * nearest.distance_m;
+  return nearest.distance_m < d_min_factor(light) * least_d_min;
+}
+
+// §3.1.3. The nearest of the centres that cover a light bounds the search for its nearest one.
+Candidate Selection::nearest_center(const PointTree& centers, uint32_t light) const {
+  Candidate nearest = nearest_[light];
+  const double own_reach = reach(lights_[light]);
+  SquaredRadius radius(own_reach * nearest.distance_m);
+  centers.visit_near(lights_[light].position_ws, radius, [&](uint32_t center) {
+    const Candidate candidate{distance_m(light, center), rank_[center], center};
+    if (!candidate.before(nearest) || is_blocked(light, center)) return;
+    nearest = candidate;
+    radius = SquaredRadius(own_reach * nearest.distance_m);
+  });
+  return nearest;
+}
+
+void Selection::join_nearest() {
+  const PointTree centers = tree_of([&](uint32_t light) { return rank_[light] != none; });
+  for (const uint32_t light : order_) {
+    if (rank_[light] != none) continue;
+    Candidate& nearest = nearest_[light];
+    if (!is_nearest_of_all(nearest, light)) nearest = nearest_center(centers, light);
+    if (!clings()) continue;
+    const uint32_t last = settings_.previous_centers[light];
+    if (last >= lights_.size() || rank_[last] == none || last == nearest.center) continue;
+    const double distance = distance_m(light, last);
+    if (distance <= (1.0 + double{settings_.stability}) * nearest.distance_m && !is_blocked(light, last))
+      nearest = {distance, rank_[last], last};
+  }
+}
+
+// In the order of their centres' indices: with d_init 0 that is the order of the lights.
+LightClusters Selection::clusters() const {
+  LightClusters result;
+  std::vector<uint32_t> cluster_of_center(lights_.size());
+  for (uint32_t light = 0; light < lights_.size(); ++light) {
+    if (nearest_[light].center != light) continue;
+    cluster_of_center[light] = static_cast<uint32_t>(result.clusters.size());
+    result.clusters.push_back({light, d_min_[light], 0.0f, 0.0f, 0});
+  }
+  for (uint32_t light = 0; light < lights_.size(); ++light) {
+    const Candidate& nearest = nearest_[light];
+    const uint32_t number = cluster_of_center[nearest.center];
+    const double straight = straight_distance_m(lights_[light].position_ws, lights_[nearest.center].position_ws);
+    LightCluster& joined = result.clusters[number];
+    joined.range_m = std::max(joined.range_m, to_float(straight + double{lights_[light].range_m}));
+    joined.spread_m = std::max(joined.spread_m, to_float(nearest.distance_m));
+    ++joined.light_count;
+    result.cluster_of_light.push_back(number);
+  }
+  return result;
 }
 
 }  // namespace
 
 float scaled_d_min(const ClusterSettings& settings, const glm::vec3& center_ws) {
-  const float depth = glm::distance(settings.camera_ws, center_ws) / settings.z_far_m;
+  const double depth = straight_distance_m(settings.camera_ws, center_ws) / double{settings.z_far_m};
   switch (settings.scaling) {
     case DistanceScaling::grow:
-      return settings.d_init_m * (1.0f + depth);
+      return to_float(settings.d_init_m * (1.0 + depth));
     case DistanceScaling::paper_formula:
-      return settings.d_init_m * std::max(0.0f, 1.0f - depth);
+      return to_float(settings.d_init_m * std::max(0.0, 1.0 - depth));
     case DistanceScaling::none:
       break;
   }
   return settings.d_init_m;
 }
 
-LightClusters select_light_clusters(std::span<const ClusterLight> lights, const ClusterSettings& settings) {
-  const auto order = by_descending_range(lights);
-  const auto centers = select_centers(lights, order, settings);
+bool has_own_center(const ClusterLight& light, const ClusterSettings& settings) {
+  return light.unclustered || (light.dynamic && settings.dynamic_lights == DynamicLights::own);
+}
 
-  // Clusters are kept in the order of their centres' indices: with d_init 0 that is the order of the lights.
-  std::vector<uint32_t> rank(centers.size());
-  std::iota(rank.begin(), rank.end(), 0u);
-  std::sort(rank.begin(), rank.end(), [&](uint32_t a, uint32_t b) { return centers[a].light < centers[b].light; });
-  LightClusters result;
-  std::vector<uint32_t> cluster_of_center(centers.size());
-  for (uint32_t c : rank) {
-    cluster_of_center[c] = static_cast<uint32_t>(result.clusters.size());
-    result.clusters.push_back({centers[c].light, centers[c].d_min_m, lights[centers[c].light].range_m, 0});
-  }
-
-  // §3.1.3
-  result.cluster_of_light.resize(lights.size());
-  for (uint32_t light = 0; light < lights.size(); ++light) {
-    float nearest = std::numeric_limits<float>::infinity();
-    uint32_t cluster = 0;
-    for (uint32_t c = 0; c < centers.size(); ++c) {
-      const float distance = glm::distance(lights[light].position_ws, centers[c].position_ws);
-      if (distance < nearest) {
-        nearest = distance;
-        cluster = cluster_of_center[c];
-      }
-    }
-    LightCluster& joined = result.clusters[cluster];
-    joined.range_m = std::max(joined.range_m, nearest + lights[light].range_m);
-    ++joined.light_count;
-    result.cluster_of_light[light] = cluster;
-  }
-  return result;
+LightClusters select_light_clusters(std::span<const ClusterLight> lights, const ClusterSettings& settings,
+                                    const Blocked& blocked) {
+  return Selection(lights, settings, blocked).clusters();
 }
 
 }  // namespace chandelier::lights

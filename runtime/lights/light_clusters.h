@@ -3,17 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
-namespace chandelier::lights {
+#include "lights/cluster_metric.h"
 
-/// What clustering knows of a light. World space, metres.
-struct ClusterLight {
-  glm::vec3 position_ws;
-  float range_m;
-};
+namespace chandelier::lights {
 
 /// d_min of a centre at distance |C| from the camera (README.md of this folder says why there are three).
 enum class DistanceScaling : uint32_t {
@@ -22,17 +19,31 @@ enum class DistanceScaling : uint32_t {
   none,           // d_init: stable under a moving camera
 };
 
+/// Whether lights that move are clustered like others, or each keeps a shadow map of its own (LightCluster §5.6).
+enum class DynamicLights : uint32_t { cluster, own };
+
+/// Of `previous_centers`: the light had none.
+constexpr uint32_t no_center = 0xFFFFFFFF;
+
 struct ClusterSettings {
   glm::vec3 camera_ws{0.0f};
   float d_init_m = 0.5f;
   float z_far_m = 30.0f;
   DistanceScaling scaling = DistanceScaling::grow;
+  DynamicLights dynamic_lights = DynamicLights::cluster;
+  float stability =
+      0.0f;  // 0 to below 1: how much a light clings to what it was a frame ago; 0 is the paper's selection
+  std::span<const uint32_t> previous_centers;  // of each light its centre a frame ago, or no_center; or nothing at all
 };
+
+/// Whether a light cannot take a centre's shadow map, wherever the two stand: indices into the lights. May be empty.
+using Blocked = std::function<bool(uint32_t light, uint32_t center)>;
 
 struct LightCluster {
   uint32_t center;       // index of the light whose position the shadow map is drawn from
   float d_min_m;         // radius of the area light that stands for the cluster
   float range_m;         // C_att = max over members of d_C + range: beyond it no member reaches
+  float spread_m;        // largest metric distance of a member; 0 where all stand in one place
   uint32_t light_count;  // members, the centre included
 };
 
@@ -43,9 +54,15 @@ struct LightClusters {
 
 float scaled_d_min(const ClusterSettings& settings, const glm::vec3& center_ws);
 
+/// Does it keep a shadow map of its own, which no other light takes?
+bool has_own_center(const ClusterLight& light, const ClusterSettings& settings);
+
 /// Selects centres in descending order of range, ties by index: a light becomes a centre when it is farther than d_min
-/// from every centre so far (§3.1.2). Then every other light joins its nearest centre, ties to the one selected first
-/// (§3.1.3). Needs finite positions and ranges; O(lights * clusters).
-LightClusters select_light_clusters(std::span<const ClusterLight> lights, const ClusterSettings& settings);
+/// from every centre so far that is not blocked (§3.1.2). Then every other light joins its nearest centre, ties to the
+/// one selected first (§3.1.3). Finite input; O(lights log lights) where clusters are about as large as d_min says.
+/// With stability s > 0, lights that were centres come first and stay centres beyond (1 - s) d_min, the others become
+/// centres beyond (1 + s) d_min, and a light keeps its centre unless another is nearer by a factor of more than 1 + s.
+LightClusters select_light_clusters(std::span<const ClusterLight> lights, const ClusterSettings& settings,
+                                    const Blocked& blocked = {});
 
 }  // namespace chandelier::lights

@@ -121,7 +121,9 @@ class LightClustersOfRandomLights : public testing::TestWithParam<uint32_t> {
   const RandomSet set = random_set(GetParam());
   const std::vector<ClusterLight>& lights = set.lights;
   const LightClusters result = select_light_clusters(set.lights, set.settings);
-  float distance(uint32_t a, uint32_t b) const { return glm::distance(lights[a].position_ws, lights[b].position_ws); }
+  double distance(uint32_t light, uint32_t center) const {
+    return metric_distance_m(lights[light], lights[center].position_ws);
+  }
 };
 INSTANTIATE_TEST_SUITE_P(Seeds, LightClustersOfRandomLights, testing::Range(0u, 20u));
 
@@ -161,14 +163,14 @@ TEST_P(LightClustersOfRandomLights, EveryLightIsWithItsNearestCenter) {
 }
 
 TEST_P(LightClustersOfRandomLights, RangesCoverTheirMembersAndNoMore) {
-  std::vector<float> needed(result.clusters.size(), 0.0f);
+  std::vector<double> needed(result.clusters.size(), 0.0);
   for (uint32_t light = 0; light < lights.size(); ++light) {
     const uint32_t cluster = result.cluster_of_light[light];
     needed[cluster] =
         std::max(needed[cluster], distance(light, result.clusters[cluster].center) + lights[light].range_m);
   }
   for (size_t c = 0; c < needed.size(); ++c) {
-    EXPECT_FLOAT_EQ(result.clusters[c].range_m, needed[c]);
+    EXPECT_FLOAT_EQ(result.clusters[c].range_m, static_cast<float>(needed[c]));
     EXPECT_EQ(result.clusters[c].d_min_m, scaled_d_min(set.settings, lights[result.clusters[c].center].position_ws));
   }
 }
