@@ -30,6 +30,20 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
           .face_size_px = static_cast<float>(settings.recipe.face_size_px)};
 }
 
+// LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved.
+bool reference_is_cheaper(const Recipe& recipe, const LightList& list) {
+  return recipe.select == Select::light_clusters && !list.maps.empty() &&
+         static_cast<float>(list.maps.size()) >= recipe.reference_share * static_cast<float>(list.lights.size());
+}
+
+// The reference's answers; everything else as asked.
+Recipe reference_of(Recipe recipe) {
+  recipe.select = Select::per_light;
+  recipe.filter = Filter::hard;
+  recipe.deliver = Deliver::inlined;
+  return recipe;
+}
+
 }  // namespace
 
 FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
@@ -38,6 +52,10 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
   FramePlan plan{.recipe = settings.recipe};
   auto start = Clock::now();
   plan.list = select_lights(lights, plan.recipe, settings.camera, aspect);
+  if (reference_is_cheaper(plan.recipe, plan.list)) {
+    plan.recipe = reference_of(plan.recipe);
+    plan.list = select_lights(lights, plan.recipe, settings.camera, aspect);
+  }
   plan.select_ms = ms_since(start);
 
   start = Clock::now();

@@ -40,7 +40,8 @@ struct Recipe {
   float d_init_m = 0.5f;  // LightCluster §3.1.2, metres
   float z_far_m = 30.0f;  // LightCluster §5.4, metres
   DistanceScaling distance_scaling = DistanceScaling::grow;
-  uint32_t face_size_px = 512;                          // width of one face of a cube
+  float reference_share = 0.85f;  // as many clusters per light in view: the reference is drawn instead; above 1: never
+  uint32_t face_size_px = 512;    // width of one face of a cube
   uint64_t shadow_budget_bytes = uint64_t{1024} << 20;  // depth kept at a time; more maps are drawn in further rounds
 };
 

@@ -278,6 +278,7 @@ FrameStats Renderer::Impl::read_stats(const RenderSettings& settings, const Fram
   stats.lights = scene.lights.size();
   stats.lights_in_view = plan.list.lights.size();
   stats.light_clusters = plan.list.maps.size();
+  stats.reference_path = plan.recipe.select != settings.recipe.select;
   stats.shadow_maps = plan.recipe.filter == Filter::rays ? 0 : plan.list.maps.size();
   stats.shadow_views = plan.views.size() - 1;
   for (size_t i = 0; i < plan.rounds.size(); ++i) {

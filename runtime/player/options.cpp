@@ -31,7 +31,7 @@ struct Typed {
   bool list_devices = false;
   bool validation = false;
   std::vector<std::string> answers;  // one per stage; empty where not given
-  std::optional<float> d_init, z_far;
+  std::optional<float> d_init, z_far, reference_share;
   std::string distance_scaling;
   std::optional<uint32_t> face_size, shadow_budget;
   float ambient = 0.0f;
@@ -163,6 +163,13 @@ void declare_recipe(CLI::App& app, Typed& typed) {
       ->type_name("NAME")
       ->check(one_of(scalings))
       ->group(group);
+  app.add_option("--reference-share", typed.reference_share,
+                 fmt::format("From so many light clusters per light on, the reference is drawn: one hard map each. "
+                             "Above 1: never [{}]",
+                             defaults.reference_share))
+      ->type_name("R")
+      ->check(number_between(1e-3, 1e6))
+      ->group(group);
   app.add_option("--face-size", typed.face_size,
                  fmt::format("Width of one face of a cube shadow map, texels [{}]", defaults.face_size_px))
       ->type_name("N")
@@ -221,6 +228,7 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
     if (!typed.answers[i].empty()) set_answer(recipe, i, typed.answers[i]);
   if (typed.d_init) recipe.d_init_m = *typed.d_init;
   if (typed.z_far) recipe.z_far_m = *typed.z_far;
+  if (typed.reference_share) recipe.reference_share = *typed.reference_share;
   if (typed.face_size) recipe.face_size_px = *typed.face_size;
   if (typed.shadow_budget) recipe.shadow_budget_bytes = uint64_t{*typed.shadow_budget} << 20;
   const auto scalings = distance_scaling_names();

@@ -15,6 +15,7 @@ constexpr std::array kCounters{
     Counter{"lights", &FrameStats::lights, false},
     Counter{"lights_in_view", &FrameStats::lights_in_view, false},
     Counter{"light_clusters", &FrameStats::light_clusters, false},
+    Counter{"reference_path", &FrameStats::reference_path, false},
     Counter{"shadow_maps", &FrameStats::shadow_maps, false},
     Counter{"shadow_views", &FrameStats::shadow_views, false},
     Counter{"shadow_triangles", &FrameStats::shadow_triangles, false},
@@ -56,6 +57,7 @@ Json recipe_json(const Recipe& recipe) {
   json["settings"] = {{"d_init_m", recipe.d_init_m},
                       {"z_far_m", recipe.z_far_m},
                       {"distance_scaling", distance_scaling_names()[static_cast<std::size_t>(recipe.distance_scaling)]},
+                      {"reference_share", recipe.reference_share},
                       {"face_size_px", recipe.face_size_px},
                       {"shadow_budget_bytes", recipe.shadow_budget_bytes}};
   return json;

@@ -88,11 +88,29 @@ TEST_F(RecipesTest, LightClustersOfOneLightEachGiveTheReferencesPicture) {
   Renderer renderer(device(), small_room(20).open());
   for (const Filter filter : {Filter::hard, Filter::pcf}) {
     const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, filter, 0)));
-    const Frame clustered = frame(renderer, room_settings(recipe_with(Select::light_clusters, filter, 0)));
+    RenderSettings settings = room_settings(recipe_with(Select::light_clusters, filter, 0));
+    settings.recipe.reference_share = 1.5f;
+    const Frame clustered = frame(renderer, settings);
     EXPECT_EQ(clustered.stats.light_clusters, reference.stats.lights_in_view);
     EXPECT_GT(brightness(reference.picture), 0.001);
     expect_same(reference, clustered);
   }
+}
+
+// LightCluster §5.4: clusters that are nearly as many as lights are not worth a soft filter.
+TEST_F(RecipesTest, TheReferenceIsDrawnWhereClustersAreNearlyAsManyAsLights) {
+  Renderer renderer(device(), small_room(20).open());
+  const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, Filter::hard, 0)));
+  RenderSettings settings = room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.1f));
+  settings.recipe.deliver = Deliver::textures;
+  const Frame instead = frame(renderer, settings);
+  EXPECT_EQ(instead.stats.reference_path, 1u);
+  EXPECT_EQ(instead.stats.visibility_bytes, 0u);
+  expect_same(reference, instead);
+  settings.recipe.reference_share = 1.5f;
+  const Frame clusters = frame(renderer, settings);
+  EXPECT_EQ(clusters.stats.reference_path, 0u);
+  EXPECT_NE(clusters.picture.radiance, reference.picture.radiance);
 }
 
 TEST_F(RecipesTest, LightClustersShareMaps) {
