@@ -27,7 +27,8 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
           .forward_ws = axes_of(settings.camera).forward,
           .ambient = settings.ambient,
           .size_px = {static_cast<float>(settings.width), static_cast<float>(settings.height)},
-          .face_size_px = static_cast<float>(settings.recipe.face_size_px)};
+          .face_size_px = static_cast<float>(settings.recipe.face_size_px),
+          .z_far_m = settings.recipe.z_far_m};
 }
 
 // LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved.

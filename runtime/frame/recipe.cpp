@@ -18,7 +18,7 @@ constexpr std::string_view store_names[]{"cube-array"};
 constexpr std::string_view project_names[]{"cube"};
 constexpr std::string_view cull_names[]{"none", "light-frustum"};
 constexpr std::string_view rasterize_names[]{"multi-draw"};
-constexpr std::string_view filter_names[]{"hard", "pcf", "rays"};
+constexpr std::string_view filter_names[]{"hard", "pcf", "pcss", "rays"};
 constexpr std::string_view deliver_names[]{"inline", "textures"};
 constexpr std::string_view shade_names[]{"ggx", "lambert"};
 constexpr std::string_view scaling_names[]{"grow", "paper-formula", "none"};
@@ -59,10 +59,10 @@ auto with_answer(RecipeType& recipe, std::string_view stage, Use use) {
   return use(recipe.g_buffer);
 }
 
-constexpr Recipe lightcluster_recipe() {
+constexpr Recipe lightcluster_recipe(Filter filter) {
   Recipe recipe;
   recipe.select = Select::light_clusters;
-  recipe.filter = Filter::pcf;
+  recipe.filter = filter;
   return recipe;
 }
 
@@ -76,7 +76,9 @@ constexpr Recipe truth_recipe() {
 const std::array preset_list{
     Preset{"reference", "one shadow map per light in view, hard shadows: what the others are measured against",
            Recipe{}},
-    Preset{"lightcluster", "one shadow map per light cluster, read by PCF (LightCluster)", lightcluster_recipe()},
+    Preset{"lightcluster", "one shadow map per light cluster, read by PCSS (LightCluster)",
+           lightcluster_recipe(Filter::pcss)},
+    Preset{"lightcluster-pcf", "the same, read by PCF", lightcluster_recipe(Filter::pcf)},
     Preset{"truth", "rays from every visible point to every light, on the CPU: what shadow maps are measured against",
            truth_recipe()},
 };
@@ -113,7 +115,7 @@ std::optional<std::string> refusal(const Recipe& recipe) {
   if (recipe.face_size_px < 16 || recipe.face_size_px > 16384) return "face-size must be from 16 to 16384 texels";
   if (clustered && recipe.filter == Filter::hard && recipe.d_init_m > 0.0f)
     return "select light-clusters with filter hard: lights that share a map need a soft filter (LightCluster §3.2.1); "
-           "use filter pcf, or d-init 0";
+           "use filter pcss or pcf, or d-init 0";
   if (recipe.filter == Filter::rays && (recipe.select != Select::per_light || recipe.deliver != Deliver::textures))
     return "filter rays: needs select per-light and deliver textures (preset truth)";
   return std::nullopt;

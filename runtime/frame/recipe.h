@@ -19,7 +19,7 @@ enum class Store : uint32_t { cube_array };
 enum class Project : uint32_t { cube };
 enum class Cull : uint32_t { none, light_frustum };
 enum class Rasterize : uint32_t { multi_draw };
-enum class Filter : uint32_t { hard, pcf, rays };
+enum class Filter : uint32_t { hard, pcf, pcss, rays };
 enum class Deliver : uint32_t { inlined, textures };
 enum class Shade : uint32_t { ggx, lambert };
 

@@ -25,6 +25,8 @@ layout(binding = 7) uniform sampler2DArrayShadow layers;
 layout(binding = 8, rgba32f) uniform image2D radiance_image;
 layout(binding = 9, scalar) readonly buffer TileWords { TileWord tile_words[]; };
 layout(binding = 10, scalar) buffer Visibility { uint8_t visibility_bytes[]; };
+layout(binding = 11) uniform samplerCubeArray cube_depths;
+layout(binding = 12) uniform sampler2DArray layer_depths;
 layout(push_constant, scalar) uniform Push { ShadeConstants round; };
 
 #include "lookup/lookup.glsl"

@@ -11,14 +11,14 @@ namespace {
 enum class Shader : uint32_t { visibility, shade };
 
 // Outside a cascade nothing casts: the border is as far as depth goes.
-gpu::Owned<VkSampler> compare_sampler(const gpu::Device& device, VkFilter filter) {
+gpu::Owned<VkSampler> shadow_sampler(const gpu::Device& device, VkFilter filter, VkBool32 compare) {
   return gpu::make_sampler(device, {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                     .magFilter = filter,
                                     .minFilter = filter,
                                     .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
                                     .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
                                     .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                    .compareEnable = VK_TRUE,
+                                    .compareEnable = compare,
                                     .compareOp = VK_COMPARE_OP_GREATER_OR_EQUAL,
                                     .borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK});
 }
@@ -34,7 +34,7 @@ const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pip
   constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   constexpr auto image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   const gpu::LayoutInfo layout{.bindings = {buffer, buffer, buffer, buffer, image, image, image, image,
-                                            VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, buffer, buffer},
+                                            VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, buffer, buffer, image, image},
                                .push_bytes = sizeof(frame::ShadeConstants)};
   const std::span<const uint32_t> spirv =
       shader == Shader::visibility ? std::span<const uint32_t>(visibility_comp) : std::span<const uint32_t>(shade_comp);
@@ -56,7 +56,8 @@ void record_over_picture(VkCommandBuffer cmd, const gpu::Device& device, ShadePi
              gpu::sampled(targets.surface.view, pipelines.texel_sampler),
              gpu::sampled(targets.depth.view, pipelines.texel_sampler), gpu::sampled(store.cubes, compare),
              gpu::sampled(store.depth.view, compare), gpu::storage_image(targets.radiance), gpu::storage(tile_words),
-             gpu::storage(visibility)});
+             gpu::storage(visibility), gpu::sampled(store.cubes, pipelines.nearest_depth),
+             gpu::sampled(store.depth.view, pipelines.nearest_depth)});
   gpu::push_constants(cmd, pipeline,
                       frame::ShadeConstants{.first_light = input.first_light,
                                             .light_end = input.first_light + input.light_count,
@@ -70,8 +71,9 @@ void record_over_picture(VkCommandBuffer cmd, const gpu::Device& device, ShadePi
 ShadePipelines make_shade_pipelines(const gpu::Device& device) {
   ShadePipelines pipelines;
   pipelines.texel_sampler = make_texel_sampler(device);
-  pipelines.nearest_compare = compare_sampler(device, VK_FILTER_NEAREST);
-  pipelines.linear_compare = compare_sampler(device, VK_FILTER_LINEAR);
+  pipelines.nearest_compare = shadow_sampler(device, VK_FILTER_NEAREST, VK_TRUE);
+  pipelines.linear_compare = shadow_sampler(device, VK_FILTER_LINEAR, VK_TRUE);
+  pipelines.nearest_depth = shadow_sampler(device, VK_FILTER_NEAREST, VK_FALSE);
   return pipelines;
 }
 

@@ -19,6 +19,7 @@ struct ShadePipelines {
   gpu::Owned<VkSampler> texel_sampler;                    // for targets
   gpu::Owned<VkSampler> nearest_compare;                  // filter hard
   gpu::Owned<VkSampler> linear_compare;                   // other filters
+  gpu::Owned<VkSampler> nearest_depth;                    // filter pcss, its search for blockers
 };
 ShadePipelines make_shade_pipelines(const gpu::Device& device);
 

@@ -140,7 +140,7 @@ TEST_F(FloorTest, PointLightEndsAtItsRange) {
   expect_radiance(point_light(above, 40, 2), {}, Filter::hard, Shade::lambert, 4000, 5000);
 }
 TEST_F(FloorTest, SpotLightInsideItsConesBetweenAndOutside) {
-  for (const Filter filter : {Filter::hard, Filter::pcf})
+  for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss})
     expect_radiance(spot_light(above, {-0.3f, -1, 0.25f}, 60, 9, 0.25f, 0.5f), {}, filter, Shade::lambert, 2000, 5000);
 }
 TEST_F(FloorTest, WideSpotLightReachesTheSideFacesOfItsCube) {
@@ -148,7 +148,7 @@ TEST_F(FloorTest, WideSpotLightReachesTheSideFacesOfItsCube) {
                   Shade::lambert, 5000, 1000);
 }
 TEST_F(FloorTest, DirectionalLight) {
-  for (const Filter filter : {Filter::hard, Filter::pcf})
+  for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss})
     expect_radiance(directional_light({0.5f, -1, 0.3f}, 3), {}, filter, Shade::lambert, all_pixels, 0);
 }
 // Two lights share a map that is read through a disc a quarter of a metre wide: a floor must not shadow itself, not

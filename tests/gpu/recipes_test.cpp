@@ -86,7 +86,7 @@ class RecipesTest : public GpuTest {
 
 TEST_F(RecipesTest, LightClustersOfOneLightEachGiveTheReferencesPicture) {
   Renderer renderer(device(), small_room(20).open());
-  for (const Filter filter : {Filter::hard, Filter::pcf}) {
+  for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, filter, 0)));
     RenderSettings settings = room_settings(recipe_with(Select::light_clusters, filter, 0));
     settings.recipe.reference_share = 1.5f;
@@ -167,7 +167,7 @@ TEST_F(RecipesTest, TilesGiveThePictureOfAllLights) {
 // A byte holds hard visibility exactly, and filtered visibility to half a 255th of each light's share.
 TEST_F(RecipesTest, VisibilityTexturesGiveThePictureOfInlineVisibility) {
   Renderer renderer(device(), small_room(20).open());
-  for (const Filter filter : {Filter::hard, Filter::pcf}) {
+  for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     RenderSettings settings = room_settings(recipe_with(Select::per_light, filter, 0));
     const Frame inlined = frame(renderer, settings);
     settings.recipe.deliver = Deliver::textures;

@@ -114,7 +114,7 @@ class ShadowEdgeTest : public GpuTest {
   void expect_edges_of_cube(const Situation& situation) {
     const pack::Light light = situation.occluded.lights[0];
     const float pixel = 2.0f * situation.camera_height_m / static_cast<float>(size_px);
-    for (const Filter filter : {Filter::hard, Filter::pcf}) {
+    for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
       const float texels = filter == Filter::hard ? 1.0f : 2.5f;
       expect_edges(situation, filter, [&](const glm::vec3& p) {
         return texels * texel_on_floor(light, p, situation.face_size_px) + pixel;
@@ -167,7 +167,7 @@ TEST_F(ShadowEdgeTest, RowsCrossTheEdgeWithinOneTexel) {
   const float pixel = 2.0f * situation.camera_height_m / static_cast<float>(size_px);
   const float scale = lamp.y / (lamp.y - occluder_y);  // from the occluder to its shadow
   const float left = lamp.x + (low.x - lamp.x) * scale, right = lamp.x + (high.x - lamp.x) * scale;
-  for (const Filter filter : {Filter::hard, Filter::pcf}) {
+  for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     const RenderSettings settings = settings_of(situation, filter);
     const Picture bare = draw(device(), floor_and_light(light), settings);
     const Picture picture = draw(device(), situation.occluded, settings);
@@ -272,7 +272,7 @@ TEST_F(ShadowEdgeTest, LowLampThroughSideFaces) {
     return upper.x > min.x - 0.05f && lower.x < max.x + 0.05f && upper.y > min.z - 0.05f && lower.y < max.z + 0.05f;
   };
   const float pixel = 2.0f * situation.camera_height_m / static_cast<float>(size_px);
-  for (const Filter filter : {Filter::hard, Filter::pcf}) {
+  for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     // Beside the texel that is sampled, a point is moved off the floor by 0.75 texels (1.5 for pcf) against acne;
     // through a side face that shows in full on the floor.
     const float texels = filter == Filter::hard ? 0.71f + 0.75f : 2.5f + 1.5f;
@@ -303,7 +303,7 @@ TEST_F(ShadowEdgeTest, DirectionalLight) {
   const float cosine = -direction.y, tangent = std::sqrt(1.0f - cosine * cosine) / cosine;
   const float pixel = 2.0f * situation.camera_height_m / static_cast<float>(size_px);
   std::cout << "texel " << cascade->texel_m << " m, pixel " << pixel << " m\n";
-  for (const Filter filter : {Filter::hard, Filter::pcf}) {
+  for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     // Half a texel's diagonal (pcf: its disc and a bilinear texel), and the move off the floor against acne: 1.5
     // texels, 3 for pcf, which show on the floor times the tangent.
     const float texels = filter == Filter::hard ? 0.71f / cosine + 1.5f * tangent : 2.5f / cosine + 3.0f * tangent;
@@ -363,7 +363,7 @@ TEST_F(ShadowEdgeTest, NoSeamsBetweenFaces) {
   for (const float height : {0.3f, 1.0f}) {
     for (const uint32_t face_size_px : {64u, 512u}) {
       const pack::Light light = point_light({0.12f, height, -0.07f}, 30, 12);
-      for (const Filter filter : {Filter::hard, Filter::pcf}) {
+      for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
         Situation situation{floor_and_light(light), {}};
         situation.face_size_px = face_size_px;
         const RenderSettings settings = settings_of(situation, filter);
@@ -379,7 +379,7 @@ TEST_F(ShadowEdgeTest, NoSeamsBetweenFaces) {
           }
         }
         EXPECT_EQ(wrong, 0u) << "height " << height << ", faces " << face_size_px << ", filter "
-                             << (filter == Filter::hard ? "hard" : "pcf");
+                             << static_cast<uint32_t>(filter);
       }
     }
   }

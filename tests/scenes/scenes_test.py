@@ -114,7 +114,7 @@ class Sponza(SceneTest):
 
     def test_single_light_clusters_give_the_reference_s_picture(self):
         pack = self.bake()
-        for picture_filter in ("hard", "pcf"):
+        for picture_filter in ("hard", "pcf", "pcss"):
             found = compare(pack, "--d-init", "0", "--filter", picture_filter)
             self.assertEqual(found["max_error"], {"linear": 0.0, "shown": 0.0}, picture_filter)
             self.assertEqual(found["b"]["counters"]["light_clusters"], 80)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The filter stage: how much of a map's area light reaches p, 0 to 1. Expects `filter_answer` and what shadow_lookup.glsl
-// expects in scope.
+// and pcss.glsl expect in scope.
 #include "shadows/filter/hard.glsl"
-#include "shadows/filter/pcf.glsl"
+#include "shadows/filter/pcss.glsl"
 
-const uint FILTER_HARD = 0u, FILTER_PCF = 1u;  // frame/recipe.h
+const uint FILTER_HARD = 0u, FILTER_PCF = 1u, FILTER_PCSS = 2u;  // frame/recipe.h
 
 float visibility(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
   if (filter_answer == FILTER_PCF) return pcf_visibility(map, p, n, pixel);
+  if (filter_answer == FILTER_PCSS) return pcss_visibility(map, p, n, pixel);
   return hard_visibility(map, p, n);
 }

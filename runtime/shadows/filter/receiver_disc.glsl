@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// A disc of taps in the receiver's plane, turned by the pixel: a flat receiver never shadows itself however wide the disc is.
+#ifndef CHANDELIER_RECEIVER_DISC_GLSL
+#define CHANDELIER_RECEIVER_DISC_GLSL
+#include "shadows/filter/shadow_lookup.glsl"
+
+// The receiver itself and seven darts in the unit disc, at least 0.55 apart, mean squared radius 0.47 (0.5 is an even disc).
+const vec2 POISSON_DISC[POISSON_TAPS] =
+    vec2[](vec2(0.000, 0.000), vec2(-0.092, -0.905), vec2(-0.698, 0.252), vec2(0.719, -0.070), vec2(0.477, 0.683),
+           vec2(-0.434, -0.369), vec2(0.301, -0.520), vec2(-0.165, 0.666));
+
+const float SMOOTHING_TEXELS = 1.5;  // least radius: hides the staircase of a single light's map
+const float RAISE_TEXELS = 1.5;      // bilinear comparison reads texels whose centres are up to a diagonal away
+
+// Jimenez 2014, Next Generation Post Processing in Call of Duty: gradient noise, 0 to 1.
+float gradient_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
+
+// Two unit vectors that span the plane across n, turned by the pixel's own angle.
+mat2x3 receiver_axes(vec3 n, vec2 pixel) {
+  vec3 t = normalize(abs(n.y) < 0.9 ? cross(n, vec3(0.0, 1.0, 0.0)) : cross(n, vec3(1.0, 0.0, 0.0)));
+  vec3 b = cross(n, t);
+  float angle = 6.2831853 * gradient_noise(pixel);
+  return mat2x3(cos(angle) * t + sin(angle) * b, cos(angle) * b - sin(angle) * t);
+}
+
+// A receiver's plane as the centre of a cube sees it.
+struct CubeDisc {
+  vec3 receiver;  // from the centre, metres; off its surface
+  mat2x3 axes;    // unit vectors in the plane
+  vec2 slope;     // how much farther away the plane is a metre along each axis, relative to the receiver's distance
+  float cube;
+};
+
+// For taps up to radius_m from the receiver: they may fall on other faces than p does, at other slopes, which is why the
+// whole plane is moved by what the worst of them needs.
+CubeDisc cube_disc(ShadowMap map, vec3 p, vec3 n, vec2 pixel, float radius_m) {
+  vec3 d = p - map.center_ws;
+  float raise_m = RAISE_TEXELS * 2.0 / view.face_size_px * (largest(abs(d)) + radius_m);
+  float across = along_major_axis(d, n, raise_m + 1.4142136 * radius_m);
+  d += n * (raise_m * sqrt(max(0.0, 1.0 - across * across)));
+  mat2x3 axes = receiver_axes(n, pixel);
+  return CubeDisc(d, axes, d * axes / dot(d, d), float(map.cube));
+}
+
+// A tap of the disc: where the plane lies there and its depth.
+struct Tap {
+  vec3 at;
+  float depth;
+  float compared;  // no farther away than the receiver is: what is farther cannot shadow it, though in a concave corner it
+                   // may stand before the tap
+};
+
+Tap cube_tap(CubeDisc disc, vec2 at_m) {
+  vec3 at = disc.receiver + disc.axes * at_m;
+  float depth = SHADOW_NEAR_M / (largest(abs(at)) * (1.0 - DEPTH_ROUNDING));
+  return Tap(at, depth, depth * max(1.0, 1.0 + dot(disc.slope, at_m)));
+}
+
+// A receiver's plane in a cascade.
+struct CascadeDisc {
+  vec3 receiver;  // clip space; off its surface
+  mat2x3 axes;    // a metre along each
+  float layer;
+};
+
+CascadeDisc cascade_disc(ShadowView cascade, vec3 p, vec3 n, vec2 pixel) {
+  mat4 clip_from_world = mat4(cascade.clip_from_world[0], cascade.clip_from_world[1], cascade.clip_from_world[2],
+                              cascade.clip_from_world[3]);
+  vec3 receiver = vec3(clip_from_world * vec4(p + n * (RAISE_TEXELS * cascade.texel_m), 1.0));
+  return CascadeDisc(receiver, mat3(clip_from_world) * receiver_axes(n, pixel), float(cascade.layer));
+}
+
+Tap cascade_tap(CascadeDisc disc, vec2 at_m) {
+  vec3 clip = disc.receiver + disc.axes * at_m;
+  return Tap(vec3(clip.xy * 0.5 + 0.5, disc.layer), clip.z, max(clip.z, disc.receiver.z) + CASCADE_ROUNDING);
+}
+
+#endif
