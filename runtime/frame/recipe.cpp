@@ -22,6 +22,8 @@ constexpr std::string_view filter_names[]{"hard", "pcf", "pcss", "rays"};
 constexpr std::string_view deliver_names[]{"inline", "textures"};
 constexpr std::string_view shade_names[]{"ggx", "lambert"};
 constexpr std::string_view scaling_names[]{"grow", "paper-formula", "none"};
+constexpr std::string_view dynamic_names[]{"cluster", "own"};
+constexpr std::string_view radius_names[]{"d-min", "spread"};
 
 constexpr StageChoices stages[]{
     {"g-buffer", "what does the camera see?", g_buffer_names},
@@ -101,6 +103,14 @@ bool set_answer(Recipe& recipe, std::size_t stage, std::string_view name) {
 
 std::span<const std::string_view> distance_scaling_names() {
   return scaling_names;
+}
+
+std::span<const std::string_view> dynamic_lights_names() {
+  return dynamic_names;
+}
+
+std::span<const std::string_view> area_radius_names() {
+  return radius_names;
 }
 
 std::span<const Preset> presets() {

@@ -24,6 +24,9 @@ enum class Deliver : uint32_t { inlined, textures };
 enum class Shade : uint32_t { ggx, lambert };
 
 using lights::DistanceScaling;
+using lights::DynamicLights;
+/// Of the area light that stands for a light cluster: d_min, or as far as its members are from its centre.
+enum class AreaRadius : uint32_t { d_min, spread };
 
 struct Recipe {
   GBuffer g_buffer = GBuffer::depth_normal_material;
@@ -40,6 +43,8 @@ struct Recipe {
   float d_init_m = 0.5f;  // LightCluster §3.1.2, metres
   float z_far_m = 30.0f;  // LightCluster §5.4, metres
   DistanceScaling distance_scaling = DistanceScaling::grow;
+  DynamicLights dynamic_lights = DynamicLights::cluster;
+  AreaRadius area_radius = AreaRadius::d_min;  // LightCluster §3.2.2
   float reference_share = 0.85f;  // as many clusters per light in view: the reference is drawn instead; above 1: never
   uint32_t face_size_px = 512;    // width of one face of a cube
   uint64_t shadow_budget_bytes = uint64_t{1024} << 20;  // depth kept at a time; more maps are drawn in further rounds
@@ -60,6 +65,8 @@ std::string_view answer(const Recipe& recipe, std::size_t stage);
 bool set_answer(Recipe& recipe, std::size_t stage, std::string_view answer);
 
 std::span<const std::string_view> distance_scaling_names();
+std::span<const std::string_view> dynamic_lights_names();
+std::span<const std::string_view> area_radius_names();
 
 struct Preset {
   std::string_view name;         // "lightcluster"

@@ -44,27 +44,76 @@ struct Member {
   float filter_radius_m;
 };
 
-std::vector<Member> members_of_light_clusters(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
+lights::ClusterLight cluster_light(const pack::Light& light) {
+  return {.position_ws = light.position_ws,
+          .range_m = light.range_m,
+          .axis_ws = light.direction_ws,
+          .cone_cos = light.type == pack::LightType::spot ? light.outer_cone_cos : -1.0f,
+          .dynamic = light.dynamic != 0,
+          .unclustered = light.unclustered != 0};
+}
+
+// A directional light stands z_far away, wherever the receiver is. None ends nearer than another: the brightest is
+// looked at first.
+lights::ClusterLight far_cluster_light(const pack::Light& light, float z_far_m) {
+  lights::ClusterLight far = cluster_light(light);
+  far.position_ws = -z_far_m * light.direction_ws;
+  far.range_m = light.intensity * glm::dot(light.color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+  return far;
+}
+
+lights::ClusterSettings cluster_settings(const Recipe& recipe, const Camera& camera) {
+  return {.camera_ws = camera.eye_ws,
+          .d_init_m = recipe.d_init_m,
+          .z_far_m = recipe.z_far_m,
+          .scaling = recipe.distance_scaling,
+          .dynamic_lights = recipe.dynamic_lights};
+}
+
+float area_radius_m(const Recipe& recipe, const lights::LightCluster& cluster) {
+  return recipe.area_radius == AreaRadius::spread ? cluster.spread_m : cluster.d_min_m;
+}
+
+// `numbers` are those of the clustered lights in the pack.
+std::vector<Member> members_of_light_clusters(std::span<const pack::Light> lights, std::span<const uint32_t> numbers,
                                               const Recipe& recipe, const Camera& camera) {
-  std::vector<Member> members;
   std::vector<lights::ClusterLight> spheres;
-  std::vector<uint32_t> numbers;
-  for (uint32_t i : in_view) {
-    if (is_directional(lights[i])) {
-      members.push_back({i, i, 0.0f, 0.0f});
-    } else {
-      spheres.push_back({lights[i].position_ws, lights[i].range_m});
-      numbers.push_back(i);
-    }
-  }
-  const auto result = lights::select_light_clusters(spheres, {.camera_ws = camera.eye_ws,
-                                                              .d_init_m = recipe.d_init_m,
-                                                              .z_far_m = recipe.z_far_m,
-                                                              .scaling = recipe.distance_scaling});
+  for (const uint32_t i : numbers) spheres.push_back(cluster_light(lights[i]));
+  const auto result = lights::select_light_clusters(spheres, cluster_settings(recipe, camera));
+  std::vector<Member> members;
   for (uint32_t i = 0; i < numbers.size(); ++i) {
     const lights::LightCluster& joined = result.clusters[result.cluster_of_light[i]];
-    members.push_back({numbers[i], numbers[joined.center], joined.range_m, joined.d_min_m});
+    members.push_back({numbers[i], numbers[joined.center], joined.range_m, area_radius_m(recipe, joined)});
   }
+  return members;
+}
+
+// Directions that differ by less than d_init / z_far (as a chord) share a map, however the camera moves. A light that
+// stands for itself alone is as hard as the sun.
+std::vector<Member> members_of_directional_clusters(std::span<const pack::Light> lights,
+                                                    std::span<const uint32_t> numbers, const Recipe& recipe,
+                                                    const Camera& camera) {
+  std::vector<lights::ClusterLight> far;
+  for (const uint32_t i : numbers) far.push_back(far_cluster_light(lights[i], recipe.z_far_m));
+  lights::ClusterSettings settings = cluster_settings(recipe, camera);
+  settings.scaling = DistanceScaling::none;
+  const auto result = lights::select_light_clusters(far, settings);
+  std::vector<Member> members;
+  for (uint32_t i = 0; i < numbers.size(); ++i) {
+    const lights::LightCluster& joined = result.clusters[result.cluster_of_light[i]];
+    const float radius = joined.light_count > 1 ? area_radius_m(recipe, joined) : 0.0f;
+    members.push_back({numbers[i], numbers[joined.center], 0.0f, radius});
+  }
+  return members;
+}
+
+std::vector<Member> clustered(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
+                              const Recipe& recipe, const Camera& camera) {
+  std::vector<uint32_t> directional, others;
+  for (const uint32_t i : in_view) (is_directional(lights[i]) ? directional : others).push_back(i);
+  auto members = members_of_light_clusters(lights, others, recipe, camera);
+  const auto far = members_of_directional_clusters(lights, directional, recipe, camera);
+  members.insert(members.end(), far.begin(), far.end());
   return members;
 }
 
@@ -78,9 +127,8 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
 
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect) {
   const auto in_view = lights_in_view(lights, camera, aspect);
-  std::vector<Member> members = recipe.select == Select::light_clusters
-                                    ? members_of_light_clusters(lights, in_view, recipe, camera)
-                                    : one_map_each(lights, in_view);
+  std::vector<Member> members = recipe.select == Select::light_clusters ? clustered(lights, in_view, recipe, camera)
+                                                                        : one_map_each(lights, in_view);
   std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
     return a.center != b.center ? a.center < b.center : a.light < b.light;
   });
@@ -94,11 +142,13 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
                            .filter_radius_m = member.filter_radius_m,
                            .first_light = static_cast<uint32_t>(i),
                            .is_directional = is_directional(lights[member.center])});
+      list.map_direction_ws.push_back(lights[member.center].direction_ws);
     }
     list.lights.push_back(frame_light(lights[member.light]));
     list.lights.back().map = static_cast<uint32_t>(list.maps.size() - 1);
     ++list.maps.back().light_count;
     list.pack_light.push_back(member.light);
+    list.center.push_back(member.center);
   }
   return list;
 }

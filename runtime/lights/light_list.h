@@ -16,11 +16,13 @@ namespace chandelier {
 /// their centre's number in the pack: with one light per map that is the pack's order.
 struct LightList {
   std::vector<frame::FrameLight> lights;
-  std::vector<frame::ShadowMap> maps;  // cube, first_view and view_count are still open
-  std::vector<uint32_t> pack_light;    // number in the pack, of each of `lights`
+  std::vector<frame::ShadowMap> maps;       // cube, first_view and view_count are still open
+  std::vector<glm::vec3> map_direction_ws;  // the way that each map's centre shines: cascades are drawn along it
+  std::vector<uint32_t> pack_light;         // number in the pack, of each of `lights`
+  std::vector<uint32_t> center;             // number in the pack of the light whose map each of `lights` takes
 };
 
-/// Point and spot lights may be clustered; a directional light always has a map of its own.
+/// Point and spot lights may share a map, and directional lights among themselves.
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect);
 
 }  // namespace chandelier

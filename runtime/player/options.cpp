@@ -32,7 +32,7 @@ struct Typed {
   bool validation = false;
   std::vector<std::string> answers;  // one per stage; empty where not given
   std::optional<float> d_init, z_far, reference_share;
-  std::string distance_scaling;
+  std::string distance_scaling, dynamic_lights, area_radius;
   std::optional<uint32_t> face_size, shadow_budget;
   float ambient = 0.0f;
 };
@@ -128,6 +128,23 @@ void declare_device(CLI::App& app, Typed& typed) {
       ->group("Device");
 }
 
+constexpr std::string_view settings_group = "Settings (each overrides the preset)";
+
+void declare_named(CLI::App& app, const std::string& option, std::string_view meaning,
+                   std::span<const std::string_view> names, std::size_t default_name, std::string& typed) {
+  app.add_option(option, typed, fmt::format("{}: {} [{}]", meaning, fmt::join(names, ", "), names[default_name]))
+      ->type_name("NAME")
+      ->check(one_of(strings(names)))
+      ->group(std::string(settings_group));
+}
+
+// Leaves the value as it is where nothing was typed.
+template <typename Enum>
+void read_named(const std::string& typed, std::span<const std::string_view> names, Enum& value) {
+  const auto name = std::find(names.begin(), names.end(), typed);
+  if (name != names.end()) value = static_cast<Enum>(name - names.begin());
+}
+
 void declare_recipe(CLI::App& app, Typed& typed) {
   const Recipe defaults;
   app.add_option("--preset", typed.preset,
@@ -145,7 +162,7 @@ void declare_recipe(CLI::App& app, Typed& typed) {
         ->check(one_of(answers))
         ->group("Recipe (each overrides the preset)");
   }
-  const std::string group = "Settings (each overrides the preset)";
+  const std::string group(settings_group);
   app.add_option("--d-init", typed.d_init,
                  fmt::format("Light clusters: d_min at the camera, metres [{}]", defaults.d_init_m))
       ->type_name("M")
@@ -156,13 +173,12 @@ void declare_recipe(CLI::App& app, Typed& typed) {
       ->type_name("M")
       ->check(number_between(1e-3, 1e6))
       ->group(group);
-  const auto scalings = strings(distance_scaling_names());
-  app.add_option("--distance-scaling", typed.distance_scaling,
-                 fmt::format("Light clusters: how d_min follows distance: {} [{}]", fmt::join(scalings, ", "),
-                             scalings[static_cast<std::size_t>(defaults.distance_scaling)]))
-      ->type_name("NAME")
-      ->check(one_of(scalings))
-      ->group(group);
+  declare_named(app, "--distance-scaling", "Light clusters: how d_min follows distance", distance_scaling_names(),
+                static_cast<std::size_t>(defaults.distance_scaling), typed.distance_scaling);
+  declare_named(app, "--dynamic-lights", "Light clusters: whether lights that move share maps or have their own",
+                dynamic_lights_names(), static_cast<std::size_t>(defaults.dynamic_lights), typed.dynamic_lights);
+  declare_named(app, "--area-radius", "Light clusters: radius of the area light that stands for one",
+                area_radius_names(), static_cast<std::size_t>(defaults.area_radius), typed.area_radius);
   app.add_option("--reference-share", typed.reference_share,
                  fmt::format("From so many light clusters per light on, the reference is drawn: one hard map each. "
                              "Above 1: never [{}]",
@@ -231,9 +247,9 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
   if (typed.reference_share) recipe.reference_share = *typed.reference_share;
   if (typed.face_size) recipe.face_size_px = *typed.face_size;
   if (typed.shadow_budget) recipe.shadow_budget_bytes = uint64_t{*typed.shadow_budget} << 20;
-  const auto scalings = distance_scaling_names();
-  const auto scaling = std::find(scalings.begin(), scalings.end(), typed.distance_scaling);
-  if (scaling != scalings.end()) recipe.distance_scaling = static_cast<DistanceScaling>(scaling - scalings.begin());
+  read_named(typed.distance_scaling, distance_scaling_names(), recipe.distance_scaling);
+  read_named(typed.dynamic_lights, dynamic_lights_names(), recipe.dynamic_lights);
+  read_named(typed.area_radius, area_radius_names(), recipe.area_radius);
   if (const auto reason = refusal(recipe)) throw UsageError(fmt::format("preset {}: {}", preset_name, *reason));
   return {preset_name, recipe};
 }

@@ -82,6 +82,100 @@ TEST(LightClustersTest, TiesGoByIndex) {
   EXPECT_EQ(result.cluster_of_light[2], 0u);
 }
 
+// The most that a light's apparent place moves for a receiver within its cone, by trying many receivers.
+double most_apparent_offset(const ClusterLight& light, const glm::vec3& center_ws) {
+  const glm::dvec3 offset = glm::dvec3(center_ws) - glm::dvec3(light.position_ws);
+  const glm::dvec3 axis(light.axis_ws);
+  const glm::dvec3 u =
+      glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+  const glm::dvec3 v = glm::cross(axis, u);
+  const double cone_rad = std::acos(double{light.cone_cos});
+  double most = 0.0;
+  for (int i = 0; i <= 60; ++i) {
+    for (int k = 0; k < 120; ++k) {
+      const double off_axis = cone_rad * i / 60.0, around = 2.0 * 3.14159265358979 * k / 120.0;
+      const glm::dvec3 way =
+          std::cos(off_axis) * axis + std::sin(off_axis) * (std::cos(around) * u + std::sin(around) * v);
+      most = std::max(most, glm::length(glm::cross(offset, way)));
+    }
+  }
+  return most;
+}
+
+TEST(ClusterMetricTest, ASpotLightsDistanceIsItsLargestApparentOffsetButAtLeastHalf) {
+  std::mt19937 random(9);
+  const auto uniform = [&](float from, float to) {
+    return from + (to - from) * static_cast<float>(random() >> 8) * 0x1p-24f;
+  };
+  uint32_t half = 0, whole = 0;
+  for (int i = 0; i < 300; ++i) {
+    ClusterLight light{{uniform(-3, 3), uniform(-3, 3), uniform(-3, 3)}, 5.0f};
+    light.axis_ws = glm::normalize(glm::vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)) + glm::vec3(0, 0, 1e-3f));
+    light.cone_cos = std::cos(uniform(0.02f, i % 2 == 0 ? 0.3f : 1.5f));
+    const glm::vec3 center(uniform(-3, 3), uniform(-3, 3), uniform(-3, 3));
+    const double straight = straight_distance_m(light.position_ws, center);
+    const double expected = std::max(0.5 * straight, most_apparent_offset(light, center));
+    const double distance = metric_distance_m(light, center);
+    EXPECT_NEAR(distance, expected, 0.002 * straight);
+    EXPECT_LE(distance, straight);
+    EXPECT_GE(distance * reach(light), straight);
+    half += distance == 0.5 * straight;
+    whole += distance == straight;
+    light.cone_cos = -1.0f;
+    EXPECT_EQ(metric_distance_m(light, center), straight);
+  }
+  EXPECT_GT(half, 5u);
+  EXPECT_GT(whole, 50u);
+}
+
+// Two lamps that shine down, one above the other: from below they are in one place.
+TEST(ClusterMetricTest, SpotLightsThatShineAlongTheirLineAreNear) {
+  ClusterLight lights[]{{{0, 3, 0}, 5}, {{0, 4.5f, 0}, 4}, {{1.5f, 3, 0}, 3}};
+  for (ClusterLight& light : lights) light.cone_cos = 0.95f;
+  const ClusterSettings settings{.d_init_m = 1.0f, .scaling = DistanceScaling::none};
+  const auto result = select_light_clusters(lights, settings);
+  EXPECT_EQ(result.cluster_of_light, (std::vector<uint32_t>{0, 0, 1}));
+  EXPECT_FLOAT_EQ(result.clusters[0].range_m, 1.5f + 4.0f);  // C_att is by straight distance
+  EXPECT_FLOAT_EQ(result.clusters[0].spread_m, 0.75f);
+  for (ClusterLight& light : lights) light.cone_cos = -1.0f;
+  EXPECT_EQ(select_light_clusters(lights, settings).clusters.size(), 3u);
+}
+
+TEST(LightClustersTest, ALightWithACenterOfItsOwnJoinsNoneAndNoneJoinsIt) {
+  ClusterLight lights[]{{{0, 0, 0}, 9}, {{0.1f, 0, 0}, 1}, {{0.2f, 0, 0}, 2}, {{0.2f, 0, 0}, 8}};
+  ClusterSettings settings{.d_init_m = 1.0f, .scaling = DistanceScaling::none};
+  lights[0].dynamic = true;
+  EXPECT_EQ(select_light_clusters(lights, settings).clusters.size(), 1u);
+  settings.dynamic_lights = DynamicLights::own;
+  EXPECT_EQ(select_light_clusters(lights, settings).cluster_of_light, (std::vector<uint32_t>{0, 1, 1, 1}));
+  lights[3].unclustered = true;
+  const auto result = select_light_clusters(lights, settings);
+  EXPECT_EQ(result.cluster_of_light, (std::vector<uint32_t>{0, 1, 1, 2}));
+  EXPECT_EQ(result.clusters[1].center, 2u);
+  EXPECT_EQ(result.clusters[2].light_count, 1u);
+  EXPECT_EQ(result.clusters[2].range_m, 8.0f);
+}
+
+// A wall between 0 and the others: whoever is near 0 alone becomes a centre, and joins no blocked one.
+TEST(LightClustersTest, BlockedPairsAreInfinitelyFarApart) {
+  const ClusterLight lights[]{{{0, 0, 0}, 9}, {{0.2f, 0, 0}, 8}, {{0.4f, 0, 0}, 7}, {{-0.3f, 0, 0}, 1}};
+  const ClusterSettings settings{.d_init_m = 1.0f, .scaling = DistanceScaling::none};
+  const Blocked wall = [&](uint32_t light, uint32_t center) {
+    return (lights[light].position_ws.x > 0.1f) != (lights[center].position_ws.x > 0.1f);
+  };
+  const auto result = select_light_clusters(lights, settings, wall);
+  EXPECT_EQ(result.cluster_of_light, (std::vector<uint32_t>{0, 1, 1, 0}));
+  EXPECT_EQ(select_light_clusters(lights, settings).clusters.size(), 1u);
+}
+
+TEST(LightClustersTest, SpreadIsTheFarthestMembersDistance) {
+  const ClusterLight lights[]{{{0, 0, 0}, 9}, {{0.25f, 0, 0}, 1}, {{0, 0.5f, 0}, 1}, {{5, 0, 0}, 1}};
+  const auto result = select_light_clusters(lights, {.d_init_m = 1.0f, .scaling = DistanceScaling::none});
+  ASSERT_EQ(result.clusters.size(), 2u);
+  EXPECT_EQ(result.clusters[0].spread_m, 0.5f);
+  EXPECT_EQ(result.clusters[1].spread_m, 0.0f);
+}
+
 struct RandomSet {
   std::vector<ClusterLight> lights;
   ClusterSettings settings;

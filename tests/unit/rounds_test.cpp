@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
@@ -181,6 +182,43 @@ TEST(ShadowViewsTest, SpotLightsKeepEveryFaceTheirConeTouches) {
     }
   }
   EXPECT_GT(spared, 500u);
+}
+
+// Wherever a member of a cluster of spot lights reaches, beside or far from the centre, there is a face that sees it.
+TEST(ShadowViewsTest, ClustersOfSpotLightsKeepEveryFaceThatAMemberReaches) {
+  std::mt19937 random(8);
+  const auto uniform = [&](float from, float to) {
+    return from + (to - from) * static_cast<float>(random() >> 8) * 0x1p-24f;
+  };
+  const auto uniform3 = [&](float from, float to) {
+    const float x = uniform(from, to), y = uniform(from, to);
+    return glm::vec3(x, y, uniform(from, to));
+  };
+  uint32_t spared = 0, points = 0;
+  for (int i = 0; i < 400; ++i) {
+    const glm::vec3 direction = uniform3(-1, 1) + glm::vec3(0, 0, 1e-3f);
+    std::vector<pack::Light> lights;
+    for (int k = 0; k < 3; ++k) {
+      lights.push_back(lamp(pack::LightType::spot, direction + uniform3(-0.2f, 0.2f), uniform(0.05f, 0.9f)));
+      lights[k].position_ws += uniform3(-0.3f, 0.3f);
+    }
+    Recipe recipe{.select = Select::light_clusters, .filter = Filter::pcf, .d_init_m = 3.0f};
+    recipe.area_radius = i % 2 == 0 ? AreaRadius::spread : AreaRadius::d_min;
+    LightList list = select_lights(lights, recipe, {}, 1.0f);
+    const auto views = project_lights(list, {}, 1.0f, {{-5, 0, -10}, {5, 3, 5}}, 256);
+    ASSERT_EQ(list.maps.size(), 1u);
+    spared += 6 - static_cast<uint32_t>(views.size());
+    for (int k = 0; k < 300; ++k) {
+      const pack::Light& light = lights[k % 3];
+      const glm::vec3 way = glm::normalize(light.direction_ws + uniform3(-1, 1));
+      const glm::vec3 p = light.position_ws + light.range_m * uniform(0.02f, 1.0f) * way;
+      if (glm::dot(way, light.direction_ws) <= light.outer_cone_cos) continue;
+      EXPECT_TRUE(std::any_of(views.begin(), views.end(), [&](const auto& view) { return sees(view, p); }));
+      ++points;
+    }
+  }
+  EXPECT_GT(spared, 40u);  // few: beside a member that is off the centre, its light comes from everywhere
+  EXPECT_GT(points, 20000u);
 }
 
 // Six cascades, each beyond the one before; whatever the camera sees of the scene is inside the cascade of its depth.

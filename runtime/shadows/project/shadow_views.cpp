@@ -27,19 +27,40 @@ frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t face, float te
       .far_m = 0.0f};
 }
 
-// Does the cone reach the square pyramid of a face? The face lies within acos(1/sqrt(3)) of its axis.
-bool cone_touches(const CubeFace& face, const frame::FrameLight& light) {
-  const float outer_cos = -light.cone_offset / light.cone_scale;
-  const float to_axis = std::acos(std::clamp(glm::dot(light.direction_ws, face.major), -1.0f, 1.0f));
-  return to_axis <= std::acos(std::clamp(outer_cos, -1.0f, 1.0f)) + std::acos(1.0f / std::sqrt(3.0f));
+// How far beyond a receiver a filter reads, per metre from the map's centre: a few texels, and as much of the area
+// light as a receiver sees a quarter of the range away.
+float filter_reach(const frame::ShadowMap& map, float range_m, float texel_m) {
+  return 4.0f * texel_m + std::min(0.5f, map.filter_radius_m / (0.25f * std::max(range_m, 1e-6f)));
+}
+
+// Is anything that the spot light reaches on the pyramid of a face, seen from the map's centre? What it reaches is a
+// sector of a ball around itself. Conservative: it says no where all of the sector is beyond one side of the pyramid.
+// Along a side's normal n, seen from the centre, a receiver t metres from the light is at most
+// n.offset + t cos(angle between n and the cone) far: linear in t, so the largest is at either end.
+bool reaches_face(const CubeFace& face, const frame::ShadowMap& map, const frame::FrameLight& light, float texel_m) {
+  const float cone_rad = std::acos(std::clamp(-light.cone_offset / light.cone_scale, -1.0f, 1.0f));
+  const glm::vec3 offset = light.position_ws - map.center_ws;
+  const float margin = filter_reach(map, light.range_m, texel_m);
+  for (const glm::vec3& side : {face.s, -face.s, face.t, -face.t}) {
+    const glm::vec3 normal = (face.major + side) / std::sqrt(2.0f);
+    const float to_axis = std::acos(std::clamp(glm::dot(light.direction_ws, normal), -1.0f, 1.0f));
+    const float per_metre = std::cos(std::max(0.0f, to_axis - cone_rad)) + margin;
+    const float nearest = glm::dot(normal, offset) + margin * glm::length(offset);
+    if (nearest <= 0.0f && nearest + light.range_m * per_metre < 0.0f) return false;
+  }
+  return true;
 }
 
 void project_cube(const LightList& list, uint32_t map_number, float texel_m, std::vector<frame::ShadowView>& views) {
   const frame::ShadowMap& map = list.maps[map_number];
-  const frame::FrameLight& light = list.lights[map.first_light];
-  const bool lone_spot = map.light_count == 1 && light.type == static_cast<uint32_t>(pack::LightType::spot);
-  for (uint32_t face = 0; face < 6; ++face)
-    if (!lone_spot || cone_touches(cube_face(face), light)) views.push_back(cube_view(map, face, texel_m));
+  const std::span members(list.lights.begin() + map.first_light, map.light_count);
+  for (uint32_t face = 0; face < 6; ++face) {
+    const bool needed = std::any_of(members.begin(), members.end(), [&](const frame::FrameLight& light) {
+      return light.type != static_cast<uint32_t>(pack::LightType::spot) ||
+             reaches_face(cube_face(face), map, light, texel_m);
+    });
+    if (needed) views.push_back(cube_view(map, face, texel_m));
+  }
 }
 
 std::array<glm::vec3, 8> corners(const Bounds& b) {
@@ -109,7 +130,7 @@ frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction,
 
 void project_cascades(const LightList& list, uint32_t map_number, const Camera& camera, float aspect,
                       const Bounds& bounds, uint32_t face_size_px, std::vector<frame::ShadowView>& views) {
-  const glm::vec3 direction = list.lights[list.maps[map_number].first_light].direction_ws;
+  const glm::vec3 direction = list.map_direction_ws[map_number];
   const auto splits = split_depths(camera, bounds);
   for (uint32_t i = 0; i < frame::cascade_count; ++i)
     views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), direction, bounds, i,

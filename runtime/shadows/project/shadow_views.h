@@ -10,8 +10,8 @@
 namespace chandelier {
 
 /// Fills first_view and view_count of `list.maps` and returns the views map by map. A view's `layer` is a face number,
-/// 0 to 5: which cube of the store the map takes is decided later. A spot light alone in its map has only the faces
-/// that its cone touches.
+/// 0 to 5: which cube of the store the map takes is decided later. A map whose lights are all spot
+/// lights has only the faces that one of them reaches.
 std::vector<frame::ShadowView> project_lights(LightList& list, const Camera& camera, float aspect, const Bounds& bounds,
                                               uint32_t face_size_px);
 

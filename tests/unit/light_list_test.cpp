@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// What becomes of a pack's lights in a frame's list: directional clusters, lights with a map of their own, area lights.
+#include "lights/light_list.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace chandelier {
+namespace {
+
+pack::Light light_at(const glm::vec3& position_ws, float range_m) {
+  pack::Light light;
+  light.position_ws = position_ws;
+  light.range_m = range_m;
+  light.direction_ws = {0, -1, 0};
+  light.intensity = 2.0f;
+  light.color = glm::vec3(1.0f);
+  light.type = pack::LightType::point;
+  light.inner_cone_cos = 1.0f;
+  light.outer_cone_cos = -1.0f;
+  return light;
+}
+
+pack::Light sun(const glm::vec3& direction, float lux) {
+  pack::Light light = light_at({}, 0);
+  light.type = pack::LightType::directional;
+  light.direction_ws = glm::normalize(direction);
+  light.intensity = lux;
+  return light;
+}
+
+Recipe clustering(float d_init_m) {
+  Recipe recipe;
+  recipe.select = Select::light_clusters;
+  recipe.filter = Filter::pcf;
+  recipe.d_init_m = d_init_m;
+  recipe.distance_scaling = DistanceScaling::none;
+  return recipe;
+}
+
+// A camera at the origin that looks along -z sees all of these.
+TEST(LightListTest, CentersAreNumbersOfThePack) {
+  const pack::Light lights[]{light_at({0, 0, -4}, 1), light_at({0, 0, 90}, 1), light_at({0, 0, -4.2f}, 2),
+                             light_at({3, 0, -9}, 2)};
+  const LightList list = select_lights(lights, clustering(0.5f), {}, 1.0f);
+  EXPECT_EQ(list.pack_light, (std::vector<uint32_t>{0, 2, 3}));
+  EXPECT_EQ(list.center, (std::vector<uint32_t>{2, 2, 3}));
+  EXPECT_EQ(list.maps[0].center_ws, lights[2].position_ws);
+  EXPECT_EQ(select_lights(lights, {}, {}, 1.0f).center, (std::vector<uint32_t>{0, 2, 3}));
+}
+
+// Chords of 1/30 and 1/15: with z_far 30 m as far apart as d_init of 1 m and 2 m.
+TEST(LightListTest, DirectionalLightsShareAMapWhereTheirDirectionsAreNear) {
+  const auto tilted = [](float rad) { return glm::vec3(std::sin(rad), -std::cos(rad), 0); };
+  const pack::Light lights[]{sun(tilted(0.0f), 1), sun(tilted(1.0f / 30.0f), 5), sun(tilted(2.0f / 30.0f), 2),
+                             sun(tilted(1.0f), 3), light_at({0, 0, -4}, 1)};
+  const LightList list = select_lights(lights, clustering(1.01f), {}, 1.0f);
+  ASSERT_EQ(list.maps.size(), 3u);
+  EXPECT_EQ(list.center, (std::vector<uint32_t>{1, 1, 1, 3, 4}));  // the brightest is the centre
+  EXPECT_EQ(list.pack_light, (std::vector<uint32_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(list.maps[0].is_directional, 1u);
+  EXPECT_EQ(list.maps[0].light_count, 3u);
+  EXPECT_EQ(list.map_direction_ws[0], lights[1].direction_ws);
+  EXPECT_EQ(list.lights[0].direction_ws, lights[0].direction_ws);  // each keeps its own
+  EXPECT_FLOAT_EQ(list.maps[0].filter_radius_m, 1.01f);
+  EXPECT_EQ(list.maps[1].filter_radius_m, 0.0f);
+  EXPECT_EQ(list.maps[2].is_directional, 0u);
+  EXPECT_EQ(select_lights(lights, clustering(0.99f), {}, 1.0f).maps.size(), 5u);
+}
+
+TEST(LightListTest, DynamicAndUnclusteredLightsKeepMapsOfTheirOwn) {
+  pack::Light lights[]{light_at({0, 0, -4}, 3), light_at({0, 0, -4.1f}, 2), light_at({0, 0, -4.2f}, 1)};
+  Recipe recipe = clustering(1.0f);
+  lights[0].dynamic = 1;
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f).maps.size(), 1u);
+  recipe.dynamic_lights = DynamicLights::own;
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f).center, (std::vector<uint32_t>{0, 1, 1}));
+  lights[2].unclustered = 1;
+  recipe.dynamic_lights = DynamicLights::cluster;
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f).center, (std::vector<uint32_t>{0, 0, 2}));
+}
+
+TEST(LightListTest, AreaRadiusIsDMinOrTheMembersSpread) {
+  const pack::Light lights[]{light_at({0, 0, -4}, 3), light_at({0, 0, -4.25f}, 2), light_at({4, 0, -9}, 1)};
+  Recipe recipe = clustering(1.0f);
+  LightList list = select_lights(lights, recipe, {}, 1.0f);
+  ASSERT_EQ(list.maps.size(), 2u);
+  EXPECT_EQ(list.maps[0].filter_radius_m, 1.0f);
+  EXPECT_EQ(list.maps[1].filter_radius_m, 1.0f);
+  recipe.area_radius = AreaRadius::spread;
+  list = select_lights(lights, recipe, {}, 1.0f);
+  EXPECT_EQ(list.maps[0].filter_radius_m, 0.25f);
+  EXPECT_EQ(list.maps[1].filter_radius_m, 0.0f);
+}
+
+}  // namespace
+}  // namespace chandelier
