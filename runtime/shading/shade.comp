@@ -6,32 +6,32 @@
 #include "shading/round.glsl"
 #include "shading/brdf.glsl"
 
-// What arrives at p and from where; zero where the light does not reach.
-struct Incoming {
-  vec3 illuminance;
+// KHR_lights_punctual, spot lights.
+float cone_falloff(FrameLight light, vec3 to_light) {
+  float cone = clamp(light.cone_offset - dot(light.direction_ws, to_light) * light.cone_scale, 0.0, 1.0);
+  return cone * cone;
+}
+
+// A light's share at p, before visibility. What is not asked of a light is not read: all threads ask alike for its type.
+vec3 unshadowed(uint number, Reflector r, vec3 geometric_normal, vec3 p) {
   vec3 to_light;
-};
-
-Incoming incoming(FrameLight light, vec3 p) {
-  if (light.type == LIGHT_TYPE_DIRECTIONAL) return Incoming(light.radiant, -light.direction_ws);
-  vec3 d = light.position_ws - p;
-  float distance_m = length(d);
-  vec3 to_light = d / max(distance_m, 1e-6);
-  float cone = clamp(dot(light.direction_ws, -to_light) * light.cone_scale + light.cone_offset, 0.0, 1.0);
-  return Incoming(light.radiant * (distance_falloff(distance_m, light.range_m) * cone * cone), to_light);
-}
-
-vec3 reflected(Surface s, vec3 to_eye, vec3 to_light, float n_dot_l) {
-  return shade_answer == SHADE_LAMBERT ? lambert(s) : ggx(s, to_eye, to_light, n_dot_l);
-}
-
-// A light's share at p, before visibility.
-vec3 unshadowed(FrameLight light, Surface s, vec3 p, vec3 to_eye) {
-  Incoming light_in = incoming(light, p);
-  float n_dot_l = dot(s.normal, light_in.to_light);
-  bool reaches = largest(light_in.illuminance) > 0.0 && n_dot_l > 0.0 && dot(s.geometric_normal, light_in.to_light) > 0.0;
+  float falloff = 1.0;
+  uint type = lights[number].type;
+  if (type == LIGHT_TYPE_DIRECTIONAL) {
+    to_light = -lights[number].direction_ws;
+  } else {
+    vec3 d = lights[number].position_ws - p;
+    float distance2 = dot(d, d);
+    float range_m = lights[number].range_m;
+    to_light = d * inversesqrt(max(distance2, 1e-12));
+    falloff = distance_falloff(distance2, range_m * range_m);
+    if (type == LIGHT_TYPE_SPOT) falloff *= cone_falloff(lights[number], to_light);
+  }
+  float n_dot_l = dot(r.normal, to_light);
+  bool reaches = falloff > 0.0 && n_dot_l > 0.0 && dot(geometric_normal, to_light) > 0.0;
   if (!reaches) return vec3(0.0);
-  return light_in.illuminance * n_dot_l * reflected(s, to_eye, light_in.to_light, n_dot_l);
+  vec3 reflected = shade_answer == SHADE_LAMBERT ? r.diffuse : ggx(r, to_light, n_dot_l);
+  return lights[number].radiant * (falloff * n_dot_l) * reflected;
 }
 
 float delivered_visibility(ShadowMap map, vec3 p, vec3 n, uvec2 pixel) {
@@ -42,7 +42,8 @@ float delivered_visibility(ShadowMap map, vec3 p, vec3 n, uvec2 pixel) {
 
 // Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked.
 vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
-  vec3 to_eye = normalize(view.eye_ws - p);
+  Reflector r = reflector(s, normalize(view.eye_ws - p));
+  if (shade_answer == SHADE_LAMBERT) r.diffuse = s.base_color / PI;
   vec3 sum = vec3(0.0);
   uint light = next_light(round.first_light);
   if (light < round.light_end) do {
@@ -50,7 +51,7 @@ vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
     uint map_end = map.first_light + map.light_count;
     vec3 of_map = vec3(0.0);
     do {
-      of_map += unshadowed(lights[light], s, p, to_eye);
+      of_map += unshadowed(light, r, s.geometric_normal, p);
       light = next_light(light + 1u);
     } while (light < map_end);
     if (largest(of_map) > 0.0) sum += delivered_visibility(map, p, s.geometric_normal, pixel) * of_map;
