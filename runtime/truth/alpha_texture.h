@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an alpha test reads: the alpha of a pack's texture, on the CPU.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "pack_schema.h"
+
+namespace chandelier::truth {
+
+/// The largest level alone: a ray has no footprint that would ask for another one.
+class AlphaTexture {
+ public:
+  /// Copies what it needs.
+  AlphaTexture(const pack::View& pack, const pack::Texture& texture);
+
+  /// 0..1 at the image's coordinates (after the texture's transform), wrapped and magnified as the texture says; 1
+  /// where the format has no alpha.
+  float at(const glm::vec2& uv) const;
+
+ private:
+  float texel(int64_t x, int64_t y) const;
+
+  int64_t width_;
+  int64_t height_;
+  pack::Wrap wrap_u_;
+  pack::Wrap wrap_v_;
+  bool linear_;
+  std::vector<uint8_t> alpha_;  // rows from the top; empty: 1 everywhere
+};
+
+}  // namespace chandelier::truth

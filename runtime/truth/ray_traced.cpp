@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truth/ray_traced.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "parallel.h"
+#include "truth/alpha_texture.h"
+
+namespace chandelier::truth {
+namespace {
+
+constexpr std::size_t kPointsAtOnce = 4096;  // of a thread
+constexpr std::size_t kRaysAtOnce = 8;
+
+// A triangle's corner as an alpha test needs it. Every part of it changes evenly over the triangle.
+struct AlphaCorner {
+  glm::vec2 uv;  // of the image
+  float alpha;   // of material and vertex
+};
+
+// Triangles that are drawn with the same test.
+struct Casters {
+  std::vector<glm::vec3> corners_ws;
+  std::vector<AlphaCorner> alpha_corners;  // empty for opaque ones
+  std::optional<AlphaTexture> texture;
+  float cutoff = 0.0f;
+
+  // Where a ray met the triangle: barycentric coordinates of its second and third corner.
+  bool has_surface_at(std::size_t triangle, float u, float v) const {
+    const AlphaCorner* const corner = &alpha_corners[3 * triangle];
+    const float w = 1.0f - u - v;
+    const float alpha = w * corner[0].alpha + u * corner[1].alpha + v * corner[2].alpha;
+    return alpha * (texture ? texture->at(w * corner[0].uv + u * corner[1].uv + v * corner[2].uv) : 1.0f) >= cutoff;
+  }
+};
+
+void let_through_cut_out(const RTCFilterFunctionNArguments* hits) {
+  const auto& casters = *static_cast<const Casters*>(hits->geometryUserPtr);
+  for (unsigned i = 0; i < hits->N; ++i) {
+    if (hits->valid[i] == 0) continue;
+    const unsigned triangle = RTCHitN_primID(hits->hit, hits->N, i);
+    if (!casters.has_surface_at(triangle, RTCHitN_u(hits->hit, hits->N, i), RTCHitN_v(hits->hit, hits->N, i)))
+      hits->valid[i] = 0;
+  }
+}
+
+// By the same sums as scene/instance.glsl.
+glm::vec3 to_world(const pack::Instance& instance, const glm::vec3& p) {
+  const auto& rows = instance.world_from_local;
+  return {glm::dot(glm::vec3(rows[0]), p) + rows[0].w, glm::dot(glm::vec3(rows[1]), p) + rows[1].w,
+          glm::dot(glm::vec3(rows[2]), p) + rows[2].w};
+}
+
+// As shadows/raster/caster.glsl and shading/uv_transform.glsl.
+AlphaCorner alpha_corner(const pack::View& pack, const pack::Material& material, uint32_t vertex) {
+  const pack::VertexAttributes& attributes = pack.vertex_attributes[vertex];
+  AlphaCorner corner{{}, material.base_color_factor.a * static_cast<float>(attributes.color >> 24) / 255.0f};
+  if (material.base_color_texture == pack::none) return corner;
+  const glm::vec3 uv((material.uv1_mask & 1u) != 0u ? attributes.uv1 : attributes.uv0, 1.0f);
+  const auto& rows = pack.textures[material.base_color_texture].uv_transform;
+  corner.uv = {glm::dot(rows[0], uv), glm::dot(rows[1], uv)};
+  return corner;
+}
+
+// By material, those without a test together.
+std::map<uint32_t, Casters> gather_casters(const pack::View& pack) {
+  std::map<uint32_t, Casters> by_test;
+  for (const pack::BatchInstance& placed : pack.batch_instances) {
+    const pack::Batch& batch = pack.batches[placed.batch];
+    const pack::Material& material = pack.materials[batch.material];
+    const bool masked = material.alpha_mode == pack::AlphaMode::mask;
+    Casters& casters = by_test[masked ? batch.material : pack::none];
+    for (uint32_t i = batch.first_index; i < batch.first_index + batch.index_count; ++i) {
+      const uint32_t vertex = pack.indices[i].vertex;
+      casters.corners_ws.push_back(to_world(pack.instances[placed.instance], pack.positions[vertex].position_ls));
+      if (masked) casters.alpha_corners.push_back(alpha_corner(pack, material, vertex));
+    }
+    if (!masked || casters.texture) continue;
+    casters.cutoff = material.alpha_cutoff;
+    if (material.base_color_texture != pack::none)
+      casters.texture.emplace(pack, pack.textures[material.base_color_texture]);
+  }
+  return by_test;
+}
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+
+class RayScene {
+ public:
+  explicit RayScene(const pack::View& pack);
+
+  void answer(const VisibilityQuery& query) const;
+
+ private:
+  void add(Casters& casters);
+  void check(const std::string& what) const;
+  void answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const;
+
+  std::map<uint32_t, Casters> casters_;  // outlive the scene, which reads their corners
+  std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
+  std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
+};
+
+RayScene::RayScene(const pack::View& pack) : casters_(gather_casters(pack)), device_(rtcNewDevice(nullptr)) {
+  if (!device_)
+    throw std::runtime_error("Embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+  scene_.reset(rtcNewScene(device_.get()));
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);  // nothing slips through where triangles meet
+  for (auto& [test, casters] : casters_) add(casters);
+  rtcCommitScene(scene_.get());
+  check("the scene");
+}
+
+void RayScene::check(const std::string& what) const {
+  const RTCError error = rtcGetDeviceError(device_.get());
+  if (error != RTC_ERROR_NONE)
+    throw std::runtime_error("Embree: cannot build " + what + " (error " + std::to_string(error) + ")");
+}
+
+void RayScene::add(Casters& casters) {
+  const std::size_t corners = casters.corners_ws.size();
+  casters.corners_ws.emplace_back();  // Embree reads four floats at a corner
+  const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, casters.corners_ws.data(), 0,
+                             sizeof(glm::vec3), corners);
+  auto* const indices = static_cast<uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), corners / 3));
+  check(std::to_string(corners / 3) + " triangles");
+  std::iota(indices, indices + corners, 0u);
+  if (!casters.alpha_corners.empty()) {
+    rtcSetGeometryUserData(geometry, &casters);
+    rtcSetGeometryOccludedFilterFunction(geometry, let_through_cut_out);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_.get(), geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+// How far points may lie behind what the camera sees: they come from a depth of 32 bits (README.md).
+float gap_m(const SurfacePoint& point) {
+  const glm::vec3 p = glm::abs(point.position_ws);
+  return 1e-5f * std::max(5.0f, std::max(p.x, std::max(p.y, p.z)));
+}
+
+// A way that is clear where the light is seen: from + t · way, t from `begin` to `end`.
+struct Sight {
+  glm::vec3 from;
+  glm::vec3 way;
+  float begin;
+  float end;
+};
+
+// Nothing where no ray is needed: the light does not reach the point, or shines on its back.
+std::optional<Sight> sight(const frame::FrameLight& light, const SurfacePoint& point) {
+  // The gap once more along the way: at the seam of two walls, a point of the one may lie behind the other.
+  const float gap = gap_m(point);
+  const glm::vec3 from = point.position_ws + gap * point.normal_ws;
+  if (light.type == static_cast<uint32_t>(pack::LightType::directional)) {
+    if (!(glm::dot(point.normal_ws, light.direction_ws) < 0.0f)) return std::nullopt;
+    return Sight{from, -light.direction_ws, gap, INFINITY};
+  }
+  const glm::vec3 to_light = light.position_ws - point.position_ws;
+  const float distance_m = glm::length(to_light);
+  if (!(glm::dot(point.normal_ws, to_light) > 0.0f) || !(distance_m < light.range_m)) return std::nullopt;
+  if (!(glm::dot(light.direction_ws, -to_light) * light.cone_scale + light.cone_offset * distance_m > 0.0f))
+    return std::nullopt;
+  const glm::vec3 way = light.position_ws - from;
+  const float length = glm::length(way);
+  return Sight{from, way, gap / length, std::max(0.0f, 1.0f - frame::shadow_near_m / length)};
+}
+
+// Ways that are looked along together.
+struct Bundle {
+  alignas(32) std::array<int, kRaysAtOnce> valid{};
+  RTCRay8 rays{};
+  std::array<std::size_t, kRaysAtOnce> point{};
+  std::size_t count = 0;
+
+  void add(const Sight& way, std::size_t number) {
+    const std::size_t i = count++;
+    valid[i] = -1;
+    point[i] = number;
+    rays.org_x[i] = way.from.x, rays.org_y[i] = way.from.y, rays.org_z[i] = way.from.z;
+    rays.dir_x[i] = way.way.x, rays.dir_y[i] = way.way.y, rays.dir_z[i] = way.way.z;
+    rays.tnear[i] = way.begin, rays.tfar[i] = way.end;
+    rays.time[i] = 0.0f, rays.mask[i] = ~0u, rays.id[i] = 0, rays.flags[i] = 0;
+  }
+
+  // Sets what is lit, and empties itself.
+  void look(RTCScene scene, std::span<uint8_t> visibility) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded8(valid.data(), scene, &context, &rays);
+    for (std::size_t i = 0; i < count; ++i)
+      if (rays.tfar[i] >= 0.0f) visibility[point[i]] = 255;
+    valid.fill(0);
+    count = 0;
+  }
+};
+
+void RayScene::answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const {
+  Bundle bundle;
+  for (std::size_t i = first; i < end; ++i) {
+    query.visibility[i] = 0;
+    if (const auto way = sight(query.light, query.points[i])) bundle.add(*way, i);
+    if (bundle.count == kRaysAtOnce) bundle.look(scene_.get(), query.visibility);
+  }
+  bundle.look(scene_.get(), query.visibility);
+}
+
+void RayScene::answer(const VisibilityQuery& query) const {
+  const std::size_t parts = (query.points.size() + kPointsAtOnce - 1) / kPointsAtOnce;
+  pack::parallel_for(parts, 0, [&](std::size_t part) {
+    answer_part(query, part * kPointsAtOnce, std::min(query.points.size(), (part + 1) * kPointsAtOnce));
+  });
+}
+
+}  // namespace
+
+VisibilitySource ray_traced_visibility(const pack::View& pack) {
+  return [scene = std::make_shared<const RayScene>(pack)](const VisibilityQuery& query) { scene->answer(query); };
+}
+
+}  // namespace chandelier::truth
