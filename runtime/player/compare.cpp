@@ -21,6 +21,7 @@ namespace chandelier::player {
 namespace {
 
 constexpr uint32_t kFramesUnlessAsked = 5;
+constexpr uint32_t kFramesBesideTruth = 1;  // which takes seconds for each, and whose time tells nothing
 
 struct Side {
   RenderSettings settings;
@@ -125,13 +126,15 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
           {"difference", {{"image", comparison.difference_image}, {"scale_shown", comparison.heat_scale}}}};
 }
 
-void run_comparison(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer) {
+void run_comparison(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer,
+                    const VisibilitySource& visibility) {
   make_folder(options.report);
   Side a;
   Side b;
-  a.settings = render_settings(options, options.recipes[0].recipe, camera.camera);
-  b.settings = render_settings(options, options.recipes[1].recipe, camera.camera);
-  draw_in_turns(renderer, options.frames.value_or(kFramesUnlessAsked), a, b);
+  a.settings = render_settings(options, options.recipes[0].recipe, camera.camera, visibility);
+  b.settings = render_settings(options, options.recipes[1].recipe, camera.camera, visibility);
+  const bool truth = std::any_of(options.recipes.begin(), options.recipes.end(), traces_rays);
+  draw_in_turns(renderer, options.frames.value_or(truth ? kFramesBesideTruth : kFramesUnlessAsked), a, b);
 
   Comparison comparison;
   comparison.a = side_run(options, camera, device, a, 0);

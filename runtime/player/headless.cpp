@@ -11,9 +11,10 @@
 
 namespace chandelier::player {
 
-void run_headless(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer) {
+void run_headless(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer,
+                  const VisibilitySource& visibility) {
   const NamedRecipe& named = options.recipes.front();
-  const RenderSettings settings = render_settings(options, named.recipe, camera.camera);
+  const RenderSettings settings = render_settings(options, named.recipe, camera.camera, visibility);
   renderer.warm_up(settings);
   std::vector<FrameStats> frames(options.frames.value_or(1));
   for (FrameStats& frame : frames) frame = renderer.draw(settings);

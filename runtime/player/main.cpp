@@ -12,6 +12,7 @@
 #include "player/headless.h"
 #include "player/image_files.h"
 #include "player/options.h"
+#include "player/truth.h"
 #ifndef CHANDELIER_PORTABLE
 #include "player/window.h"
 #endif
@@ -58,12 +59,13 @@ ValidationLog draw(const Options& options) {
 #endif
   gpu::Device device(device_options);
   Renderer renderer(device, pack);
-  if (options.mode == Mode::headless) run_headless(options, camera, device, renderer);
-  if (options.mode == Mode::compare) run_comparison(options, camera, device, renderer);
+  const VisibilitySource visibility = visibility_for(options.recipes, pack);
+  if (options.mode == Mode::headless) run_headless(options, camera, device, renderer, visibility);
+  if (options.mode == Mode::compare) run_comparison(options, camera, device, renderer, visibility);
 #ifndef CHANDELIER_PORTABLE
   const pack::BakeInfo& info = *pack.view().bake_info;
   const float scene_size_m = glm::distance(info.bounds_min_ws, info.bounds_max_ws);
-  if (window) window->run(options, camera, scene_size_m, device, renderer);
+  if (window) window->run(options, camera, scene_size_m, device, renderer, visibility);
 #endif
   return device.validation_log();
 }

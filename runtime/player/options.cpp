@@ -77,6 +77,7 @@ std::string footer() {
       "  chandelier-play scene.chandelier --output frame.png --preset lightcluster --d-init 0.3 --frames 9 "
       "--stats frame.json\n"
       "  chandelier-play scene.chandelier --compare reference,lightcluster --report report\n"
+      "  chandelier-play scene.chandelier --compare truth,lightcluster --report report\n"
       "\nExit status: 0 done, 1 failed (or the validation layer spoke), 2 wrong usage.";
   return text;
 }
@@ -90,7 +91,8 @@ void declare_output(CLI::App& app, Typed& typed) {
       ->type_name("WxH")
       ->capture_default_str()
       ->group("Output");
-  app.add_option("--frames", typed.frames, "Timed frames to draw [1, with --compare 5; a window closes after so many]")
+  app.add_option("--frames", typed.frames,
+                 "Timed frames to draw [1, with --compare 5, beside truth 1; a window closes after so many]")
       ->type_name("N")
       ->check(number_between(1, 1000000))
       ->group("Output");
@@ -251,7 +253,20 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
   read_named(typed.dynamic_lights, dynamic_lights_names(), recipe.dynamic_lights);
   read_named(typed.area_radius, area_radius_names(), recipe.area_radius);
   if (const auto reason = refusal(recipe)) throw UsageError(fmt::format("preset {}: {}", preset_name, *reason));
+#ifndef CHANDELIER_EMBREE
+  if (recipe.filter == Filter::rays)
+    throw UsageError(fmt::format("preset {}: this build has no rays, which need Embree", preset_name));
+#endif
   return {preset_name, recipe};
+}
+
+// A side of a comparison. Truth stays truth: how shadow maps are to be read is said to the other side.
+NamedRecipe make_side(const std::string& preset_name, Typed typed) {
+  const NamedRecipe preset = make_recipe(preset_name, Typed{.answers = std::vector<std::string>(typed.answers.size())});
+  for (std::size_t i = 0; i < typed.answers.size(); ++i)
+    if (traces_rays(preset) && (stage_choices()[i].stage == "filter" || stage_choices()[i].stage == "deliver"))
+      typed.answers[i].clear();
+  return make_recipe(preset_name, typed);
 }
 
 void read_comparison(const Typed& typed, Options& options) {
@@ -269,8 +284,8 @@ void read_comparison(const Typed& typed, Options& options) {
       throw UsageError("--compare: cannot be used with --select, which would make both sides select alike");
   options.mode = Mode::compare;
   options.report = typed.report;
-  options.recipes = {make_recipe(typed.compare.substr(0, comma), typed),
-                     make_recipe(typed.compare.substr(comma + 1), typed)};
+  options.recipes = {make_side(typed.compare.substr(0, comma), typed),
+                     make_side(typed.compare.substr(comma + 1), typed)};
 }
 
 void read_single(const Typed& typed, Options& options) {
@@ -345,7 +360,8 @@ Parsed parse_options(const std::vector<std::string>& arguments) {
   }
 }
 
-RenderSettings render_settings(const Options& options, const Recipe& recipe, const Camera& camera) {
+RenderSettings render_settings(const Options& options, const Recipe& recipe, const Camera& camera,
+                               const VisibilitySource& visibility) {
   RenderSettings settings;
   settings.recipe = recipe;
   settings.camera = camera;
@@ -353,6 +369,7 @@ RenderSettings render_settings(const Options& options, const Recipe& recipe, con
   settings.height = options.height;
   settings.ambient = options.ambient;
   settings.exposure_ev = options.exposure_ev;
+  settings.visibility = visibility;
   return settings;
 }
 

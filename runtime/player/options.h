@@ -37,6 +37,11 @@ struct Options {
   std::optional<float> exposure_ev;
 };
 
+/// Truth: its visibility is asked of rays on the CPU.
+inline bool traces_rays(const NamedRecipe& named) {
+  return named.recipe.filter == Filter::rays;
+}
+
 /// Options, or what to print and the exit status to leave with.
 struct Parsed {
   std::optional<Options> options;
@@ -47,7 +52,8 @@ struct Parsed {
 /// `arguments` without the program's name.
 Parsed parse_options(const std::vector<std::string>& arguments);
 
-/// The settings of a frame of `recipe` as these options want it.
-RenderSettings render_settings(const Options& options, const Recipe& recipe, const Camera& camera);
+/// The settings of a frame of `recipe` as these options want it; `visibility` as visibility_for() has it.
+RenderSettings render_settings(const Options& options, const Recipe& recipe, const Camera& camera,
+                               const VisibilitySource& visibility);
 
 }  // namespace chandelier::player

@@ -117,7 +117,7 @@ std::vector<const char*> Window::instance_extensions() const {
 }
 
 void Window::run(const Options& options, const NamedCamera& camera, float scene_size_m, const gpu::Device& device,
-                 Renderer& renderer) {
+                 Renderer& renderer, const VisibilitySource& visibility) {
   GLFWwindow* const window = impl_->window;
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   gpu::check(glfwCreateWindowSurface(device.instance, window, nullptr, &surface), "glfwCreateWindowSurface");
@@ -126,7 +126,7 @@ void Window::run(const Options& options, const NamedCamera& camera, float scene_
   std::signal(SIGINT, [](int) { asked_to_end = 1; });
   std::signal(SIGTERM, [](int) { asked_to_end = 1; });
 
-  RenderSettings settings = render_settings(options, options.recipes.front().recipe, camera.camera);
+  RenderSettings settings = render_settings(options, options.recipes.front().recipe, camera.camera, visibility);
   renderer.warm_up(settings);
   const std::string scene = options.pack.filename().string();
   auto before = std::chrono::steady_clock::now();

@@ -23,7 +23,7 @@ class Window {
   /// Draws until the window is closed, Esc is pressed, a signal asks to end, or options.frames are drawn. The camera
   /// flies through a scene of `scene_size_m` in ten seconds. Throws.
   void run(const Options& options, const NamedCamera& camera, float scene_size_m, const gpu::Device& device,
-           Renderer& renderer);
+           Renderer& renderer, const VisibilitySource& visibility);
 
  private:
   struct Impl;

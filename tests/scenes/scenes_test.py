@@ -23,7 +23,8 @@ PLAY = os.environ["CHANDELIER_PLAY"]
 BAKE = os.environ["CHANDELIER_BAKE"]
 GOLDEN = pathlib.Path(__file__).parent / "golden"
 SKIPPED = 77  # exit status that ctest shows as "Skipped"
-SIZE = ["--size", "240x135", "--face-size", "256"]
+PICTURE = ["--size", "240x135"]
+SIZE = [*PICTURE, "--face-size", "256"]
 EXAMPLES = ("atrium", "cornell", "restaurant")
 # A golden picture was drawn by one driver; others round differently at edges. A mirrored or unlit picture of these
 # scenes differs by more than ten times as much.
@@ -43,9 +44,9 @@ def play(pack, *options):
     return json.loads(stats.read_text()), read_pfm(picture)
 
 
-def compare(pack, *options):
+def compare(pack, *options, presets="reference,lightcluster", size=SIZE):
     report = pack.with_suffix("")
-    run(PLAY, pack, "--compare", "reference,lightcluster", "--report", report, "--frames", "1", "--validation", *SIZE, *options)
+    run(PLAY, pack, "--compare", presets, "--report", report, "--frames", "1", "--validation", *size, *options)
     return json.loads((report / "comparison.json").read_text())
 
 
@@ -102,6 +103,21 @@ class Examples(SceneTest):
         for d_init, clusters in ((0.1, 80), (0.3, 44), (0.5, 26), (1.6, 10)):
             stats, _ = play(pack, "--preset", "lightcluster", "--d-init", d_init)
             self.assertEqual(stats["counters"]["light_clusters"], clusters, d_init)
+
+
+class Truth(SceneTest):
+    def test_the_reference_comes_near_it(self):
+        """The nearer, the finer its maps are."""
+        pack = bake_example("restaurant", self.folder)
+        found = [compare(pack, presets="truth,reference", size=[*PICTURE, "--face-size", size]) for size in (64, 256, 1024)]
+        errors = [comparison["flip"]["mean"] for comparison in found]
+        print("FLIP at 64, 256 and 1024 texels a face:", errors)
+        self.assertTrue(0 < errors[2] < errors[1] < errors[0], errors)
+        self.assertLess(errors[2], 0.01)
+        self.assertGreater(found[2]["ssim"], 0.99)
+        truth = found[2]["a"]
+        self.assertEqual((truth["recipe"]["filter"], truth["counters"]["shadow_maps"]), ("rays", 0))
+        self.assertEqual(truth["counters"]["lights_in_view"], found[2]["b"]["counters"]["lights_in_view"])
 
 
 class Sponza(SceneTest):

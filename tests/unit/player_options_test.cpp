@@ -97,6 +97,19 @@ TEST(PlayerOptions, SettingsApplyToBothSidesOfAComparison) {
   EXPECT_NE(options.recipes[0].recipe.select, options.recipes[1].recipe.select);
 }
 
+TEST(PlayerOptions, FiltersBesideTruthAreTheOtherSides) {
+  const Options options =
+      accepted("scene.chandelier --compare truth,reference --report r --filter pcf --deliver inline --shade lambert");
+  EXPECT_EQ(stage_answer(options.recipes[0].recipe, "filter"), "rays");
+  EXPECT_EQ(stage_answer(options.recipes[0].recipe, "deliver"), "textures");
+  EXPECT_EQ(stage_answer(options.recipes[1].recipe, "filter"), "pcf");
+  EXPECT_EQ(stage_answer(options.recipes[1].recipe, "deliver"), "inline");
+  for (const NamedRecipe& side : options.recipes) EXPECT_EQ(stage_answer(side.recipe, "shade"), "lambert");
+  EXPECT_EQ(stage_answer(accepted("s --preset truth --output a.png").recipes[0].recipe, "filter"), "rays");
+  EXPECT_TRUE(traces_rays(options.recipes[0]));
+  EXPECT_FALSE(traces_rays(options.recipes[1]));
+}
+
 TEST(PlayerOptions, CameraNumbers) {
   const Camera camera = accepted("scene.chandelier --output a.png --camera 1,2,3,1,2,-7,90").camera.value();
   EXPECT_EQ(camera.eye_ws, glm::vec3(1, 2, 3));
