@@ -103,25 +103,29 @@ std::string color_bar(std::string_view id, ColorMap colors, float scale) {
       id, stops, labels);
 }
 
-std::string metric_row(std::string_view name, const std::string& value, std::string_view meaning) {
-  return fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n", name, value, meaning);
+std::string metric_row(std::string_view name, const std::string& shown, const std::string& linear,
+                       std::string_view meaning) {
+  return fmt::format("<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n", name, shown,
+                     linear, meaning);
 }
 
 std::string metrics(const Differences& d) {
-  const auto errors = [](double shown, double linear) { return fmt::format("{:.6f}<br>{:.6f}", shown, linear); };
-  return "<table><tr><th>metric</th><th class=\"n\">value</th><th>meaning</th></tr>\n" +
-         metric_row("RMSE<br>of linear radiance", errors(d.rmse_shown, d.rmse_linear),
+  const auto number = [](double value) { return fmt::format("{:.6f}", value); };
+  return "<table style=\"margin-top:1rem\"><tr><th></th><th class=\"n\">shown</th><th class=\"n\">linear</th>"
+         "<th>meaning</th></tr>\n" +
+         metric_row("RMSE", number(d.rmse_shown), number(d.rmse_linear),
                     "Root of the mean squared difference over R, G and B of every pixel; 0 is equal.") +
-         metric_row("largest error<br>of linear radiance", errors(d.max_shown, d.max_linear),
+         metric_row("largest", number(d.max_shown), number(d.max_linear),
                     "Largest difference over R, G and B of every pixel.") +
          metric_row(
-             "SSIM", d.ssim ? fmt::format("{:.6f}", *d.ssim) : "–",
-             "Likeness of local means, contrasts and structures in windows of 11×11 pixels (Wang et al. 2004), mean "
-             "over R, G and B; 1 is equal.") +
-         metric_row("FLIP", fmt::format("{:.6f}", d.flip),
-                    "Difference that a viewer sees who flips between the pictures 0.7 m before a screen 0.7 m and 3840 "
+             "SSIM", d.ssim ? number(*d.ssim) : "–", "",
+             "Likeness of means, contrasts and structures in windows of 11×11 pixels (Wang et al. 2004), mean over "
+             "R, G and B; 1 is equal.") +
+         metric_row("FLIP", number(d.flip), "",
+                    "Difference seen by a viewer who flips between the pictures 0.7 m before a screen 0.7 m and 3840 "
                     "pixels wide (Andersson et al. 2020), mean over the pixels; 0 is equal.") +
-         "</table>\n<p class=\"about\">Of the shown pictures, sRGB 0..1, unless something else is said.</p>\n";
+         "</table>\n<p class=\"about\">Shown: sRGB 0..1, as on a screen. Linear: radiance before exposure and tone "
+         "map.</p>\n";
 }
 
 std::string difference(const Comparison& c) {
