@@ -92,6 +92,25 @@ class Scenes(unittest.TestCase):
         self.assertTrue(all(light["range"] == 2 for _, _, light in made.lights))
         self.assertEqual(cluster_counts(made, "table", (0.2, 0.3, 0.4, 0.5)), (14, [12, 9, 8, 7]))
 
+    def test_rooms_file(self):
+        self.check("rooms", 32, (15_000, 60_000), 0.02)
+
+    def test_rooms_lamps_hang_nearer_to_the_next_room_s_than_to_each_other(self):
+        _, made = scene("rooms")
+
+        def sconce(name):  # "Bulb, room 0 0 right 0 back"
+            return name.rsplit(" ", 1)[0]
+
+        def room(name):
+            return name.split()[2:4]
+
+        for name, position, _ in made.lights:
+            others = [(np.linalg.norm(position - p), n) for n, p, _ in made.lights if sconce(n) != sconce(name)]
+            nearest, beside = min(others)
+            self.assertNotEqual(room(name), room(beside), name)
+            self.assertLess(nearest, 0.45)
+            self.assertGreater(min(d for d, n in others if room(n) == room(name)), 1.2, name)
+
     def test_unwritable_output_is_one_line(self):
         result = run("cornell", os.path.join(FOLDER.name, "no", "such", "folder.glb"))
         self.assertEqual(result.returncode, 1)

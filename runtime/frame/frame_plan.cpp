@@ -48,14 +48,14 @@ Recipe reference_of(Recipe recipe) {
 }  // namespace
 
 FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
-                     const RoundLimits& limits) {
+                     const RoundLimits& limits, lights::Walls* walls) {
   const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
   FramePlan plan{.recipe = settings.recipe};
   auto start = Clock::now();
-  plan.list = select_lights(lights, plan.recipe, settings.camera, aspect);
+  plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, walls);
   if (reference_is_cheaper(plan.recipe, plan.list)) {
     plan.recipe = reference_of(plan.recipe);
-    plan.list = select_lights(lights, plan.recipe, settings.camera, aspect);
+    plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, walls);
   }
   plan.select_ms = ms_since(start);
 

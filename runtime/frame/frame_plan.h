@@ -20,7 +20,8 @@ struct FramePlan {
   double project_ms = 0.0;
 };
 
+/// `walls` as select_lights() has it.
 FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
-                     const RoundLimits& limits);
+                     const RoundLimits& limits, lights::Walls* walls);
 
 }  // namespace chandelier

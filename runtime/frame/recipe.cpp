@@ -24,6 +24,7 @@ constexpr std::string_view shade_names[]{"ggx", "lambert"};
 constexpr std::string_view scaling_names[]{"grow", "paper-formula", "none"};
 constexpr std::string_view dynamic_names[]{"cluster", "own"};
 constexpr std::string_view radius_names[]{"d-min", "spread"};
+constexpr std::string_view wall_names[]{"none", "voxels", "rays"};
 
 constexpr StageChoices stages[]{
     {"g-buffer", "what does the camera see?", g_buffer_names},
@@ -111,6 +112,10 @@ std::span<const std::string_view> dynamic_lights_names() {
 
 std::span<const std::string_view> area_radius_names() {
   return radius_names;
+}
+
+std::span<const std::string_view> wall_test_names() {
+  return wall_names;
 }
 
 std::span<const Preset> presets() {

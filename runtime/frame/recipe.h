@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "lights/light_clusters.h"
+#include "lights/wall_test.h"
 
 namespace chandelier {
 
@@ -25,6 +26,7 @@ enum class Shade : uint32_t { ggx, lambert };
 
 using lights::DistanceScaling;
 using lights::DynamicLights;
+using lights::WallTest;
 /// Of the area light that stands for a light cluster: d_min, or as far as its members are from its centre.
 enum class AreaRadius : uint32_t { d_min, spread };
 
@@ -45,6 +47,7 @@ struct Recipe {
   DistanceScaling distance_scaling = DistanceScaling::grow;
   DynamicLights dynamic_lights = DynamicLights::cluster;
   AreaRadius area_radius = AreaRadius::d_min;  // LightCluster §3.2.2
+  WallTest walls = WallTest::none;
   float reference_share = 0.85f;  // as many clusters per light in view: the reference is drawn instead; above 1: never
   uint32_t face_size_px = 512;    // width of one face of a cube
   uint64_t shadow_budget_bytes = uint64_t{1024} << 20;  // depth kept at a time; more maps are drawn in further rounds
@@ -67,6 +70,7 @@ bool set_answer(Recipe& recipe, std::size_t stage, std::string_view answer);
 std::span<const std::string_view> distance_scaling_names();
 std::span<const std::string_view> dynamic_lights_names();
 std::span<const std::string_view> area_radius_names();
+std::span<const std::string_view> wall_test_names();
 
 struct Preset {
   std::string_view name;         // "lightcluster"

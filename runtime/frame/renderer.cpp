@@ -51,6 +51,9 @@ struct Streamed {
 
 struct Renderer::Impl {
   gpu::Device& device;
+  pack::View pack;
+  std::optional<rays::PackRays> rays;  // made when a recipe first asks for walls
+  std::optional<lights::Walls> walls;
   GpuScene scene;
   CullPipelines cull;
   CasterPipelines casters;
@@ -72,9 +75,10 @@ struct Renderer::Impl {
   gpu::Buffer counters_readback;
   gpu::Buffer exposure_readback;
 
-  Impl(gpu::Device& on, const pack::File& pack)
+  Impl(gpu::Device& on, const pack::File& file)
       : device(on),
-        scene(upload_scene(on, pack)),
+        pack(file.view()),
+        scene(upload_scene(on, file)),
         cull(make_cull_pipelines(on)),
         casters(make_caster_pipelines(on, scene)),
         g_buffer(make_g_buffer_pipeline(on, scene)),
@@ -87,6 +91,7 @@ struct Renderer::Impl {
         gpu::make_buffer(on, sizeof(frame::LuminanceSum), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
   }
 
+  lights::Walls* walls_for(const Recipe& recipe);
   FramePlan plan(const RenderSettings& settings);
   void make_room(const RenderSettings& settings, const FramePlan& plan);
   void record_uploads(VkCommandBuffer cmd, const FramePlan& plan);
@@ -99,12 +104,20 @@ struct Renderer::Impl {
   FrameStats read_stats(const RenderSettings& settings, const FramePlan& plan);
 };
 
+lights::Walls* Renderer::Impl::walls_for(const Recipe& recipe) {
+  if (recipe.walls == WallTest::none) return nullptr;
+  if (!rays) rays.emplace(pack);
+  if (!walls) walls.emplace(pack, *rays);
+  return &*walls;
+}
+
 FramePlan Renderer::Impl::plan(const RenderSettings& settings) {
   const uint64_t batch_instances = std::max(1u, scene.batch_instance_count);
   return plan_frame(scene.lights, scene.bounds, settings,
                     {.maps = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes),
                      .views = most_draws / batch_instances,
-                     .visibility_bytes = device.limits.maxStorageBufferRange});
+                     .visibility_bytes = device.limits.maxStorageBufferRange},
+                    walls_for(settings.recipe));
 }
 
 // Images and buffers that the frame needs; what is there already and large enough is kept.

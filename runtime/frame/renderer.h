@@ -42,8 +42,9 @@ struct FrameStats {
 
 class Renderer {
  public:
-  /// Uploads the pack, which is not needed afterwards. Throws gpu::Error.
+  /// Uploads the pack, which must outlive it: lights are selected by looking into it. Throws gpu::Error.
   Renderer(gpu::Device& device, const pack::File& pack);
+  Renderer(gpu::Device& device, pack::File&& pack) = delete;
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

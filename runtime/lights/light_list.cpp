@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 
 #include "lights/light_clusters.h"
 
@@ -76,10 +77,13 @@ float area_radius_m(const Recipe& recipe, const lights::LightCluster& cluster) {
 
 // `numbers` are those of the clustered lights in the pack.
 std::vector<Member> members_of_light_clusters(std::span<const pack::Light> lights, std::span<const uint32_t> numbers,
-                                              const Recipe& recipe, const Camera& camera) {
+                                              const Recipe& recipe, const Camera& camera, lights::Walls* walls) {
   std::vector<lights::ClusterLight> spheres;
   for (const uint32_t i : numbers) spheres.push_back(cluster_light(lights[i]));
-  const auto result = lights::select_light_clusters(spheres, cluster_settings(recipe, camera));
+  lights::Blocked blocked;
+  if (recipe.walls != WallTest::none)
+    blocked = [&](uint32_t a, uint32_t b) { return walls->between(recipe.walls, numbers[a], numbers[b]); };
+  const auto result = lights::select_light_clusters(spheres, cluster_settings(recipe, camera), blocked);
   std::vector<Member> members;
   for (uint32_t i = 0; i < numbers.size(); ++i) {
     const lights::LightCluster& joined = result.clusters[result.cluster_of_light[i]];
@@ -108,10 +112,10 @@ std::vector<Member> members_of_directional_clusters(std::span<const pack::Light>
 }
 
 std::vector<Member> clustered(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
-                              const Recipe& recipe, const Camera& camera) {
+                              const Recipe& recipe, const Camera& camera, lights::Walls* walls) {
   std::vector<uint32_t> directional, others;
   for (const uint32_t i : in_view) (is_directional(lights[i]) ? directional : others).push_back(i);
-  auto members = members_of_light_clusters(lights, others, recipe, camera);
+  auto members = members_of_light_clusters(lights, others, recipe, camera, walls);
   const auto far = members_of_directional_clusters(lights, directional, recipe, camera);
   members.insert(members.end(), far.begin(), far.end());
   return members;
@@ -125,10 +129,14 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
 
 }  // namespace
 
-LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect) {
+LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
+                        lights::Walls* walls) {
+  if (recipe.select == Select::light_clusters && recipe.walls != WallTest::none && !walls)
+    throw std::invalid_argument("select_lights: the recipe needs walls");
   const auto in_view = lights_in_view(lights, camera, aspect);
-  std::vector<Member> members = recipe.select == Select::light_clusters ? clustered(lights, in_view, recipe, camera)
-                                                                        : one_map_each(lights, in_view);
+  std::vector<Member> members = recipe.select == Select::light_clusters
+                                    ? clustered(lights, in_view, recipe, camera, walls)
+                                    : one_map_each(lights, in_view);
   std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
     return a.center != b.center ? a.center < b.center : a.light < b.light;
   });

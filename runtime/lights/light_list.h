@@ -8,6 +8,7 @@
 #include "frame/camera.h"
 #include "frame/recipe.h"
 #include "frame_schema.h"
+#include "lights/walls.h"
 #include "pack_schema.h"
 
 namespace chandelier {
@@ -22,7 +23,9 @@ struct LightList {
   std::vector<uint32_t> center;             // number in the pack of the light whose map each of `lights` takes
 };
 
-/// Point and spot lights may share a map, and directional lights among themselves.
-LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect);
+/// Point and spot lights may share a map, and directional lights among themselves. `walls`, of the same lights, are
+/// needed where the recipe looks for walls; std::invalid_argument where they are missing.
+LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
+                        lights::Walls* walls = nullptr);
 
 }  // namespace chandelier

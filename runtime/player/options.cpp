@@ -32,7 +32,7 @@ struct Typed {
   bool validation = false;
   std::vector<std::string> answers;  // one per stage; empty where not given
   std::optional<float> d_init, z_far, reference_share;
-  std::string distance_scaling, dynamic_lights, area_radius;
+  std::string distance_scaling, dynamic_lights, area_radius, walls;
   std::optional<uint32_t> face_size, shadow_budget;
   float ambient = 0.0f;
 };
@@ -181,6 +181,8 @@ void declare_recipe(CLI::App& app, Typed& typed) {
                 dynamic_lights_names(), static_cast<std::size_t>(defaults.dynamic_lights), typed.dynamic_lights);
   declare_named(app, "--area-radius", "Light clusters: radius of the area light that stands for one",
                 area_radius_names(), static_cast<std::size_t>(defaults.area_radius), typed.area_radius);
+  declare_named(app, "--walls", "Light clusters: what keeps them from reaching through walls", wall_test_names(),
+                static_cast<std::size_t>(defaults.walls), typed.walls);
   app.add_option("--reference-share", typed.reference_share,
                  fmt::format("From so many light clusters per light on, the reference is drawn: one hard map each. "
                              "Above 1: never [{}]",
@@ -252,6 +254,7 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
   read_named(typed.distance_scaling, distance_scaling_names(), recipe.distance_scaling);
   read_named(typed.dynamic_lights, dynamic_lights_names(), recipe.dynamic_lights);
   read_named(typed.area_radius, area_radius_names(), recipe.area_radius);
+  read_named(typed.walls, wall_test_names(), recipe.walls);
   if (const auto reason = refusal(recipe)) throw UsageError(fmt::format("preset {}: {}", preset_name, *reason));
 #ifndef CHANDELIER_EMBREE
   if (recipe.filter == Filter::rays)

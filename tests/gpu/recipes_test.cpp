@@ -85,7 +85,8 @@ class RecipesTest : public GpuTest {
 };
 
 TEST_F(RecipesTest, LightClustersOfOneLightEachGiveTheReferencesPicture) {
-  Renderer renderer(device(), small_room(20).open());
+  const pack::File pack = small_room(20).open();
+  Renderer renderer(device(), pack);
   for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, filter, 0)));
     RenderSettings settings = room_settings(recipe_with(Select::light_clusters, filter, 0));
@@ -99,7 +100,8 @@ TEST_F(RecipesTest, LightClustersOfOneLightEachGiveTheReferencesPicture) {
 
 // LightCluster §5.4: clusters that are nearly as many as lights are not worth a soft filter.
 TEST_F(RecipesTest, TheReferenceIsDrawnWhereClustersAreNearlyAsManyAsLights) {
-  Renderer renderer(device(), small_room(20).open());
+  const pack::File pack = small_room(20).open();
+  Renderer renderer(device(), pack);
   const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, Filter::hard, 0)));
   RenderSettings settings = room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.1f));
   settings.recipe.deliver = Deliver::textures;
@@ -114,7 +116,8 @@ TEST_F(RecipesTest, TheReferenceIsDrawnWhereClustersAreNearlyAsManyAsLights) {
 }
 
 TEST_F(RecipesTest, LightClustersShareMaps) {
-  Renderer renderer(device(), small_room(20).open());
+  const pack::File pack = small_room(20).open();
+  Renderer renderer(device(), pack);
   const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, Filter::pcf, 0)));
   const Frame clustered = frame(renderer, room_settings(recipe_with(Select::light_clusters, Filter::pcf, 1.5f)));
   EXPECT_EQ(clustered.stats.lights_in_view, reference.stats.lights_in_view);
@@ -124,7 +127,8 @@ TEST_F(RecipesTest, LightClustersShareMaps) {
 }
 
 TEST_F(RecipesTest, MapsThatTakeTurnsInTheStoreGiveTheSamePicture) {
-  Renderer renderer(device(), small_room(9).open());
+  const pack::File pack = small_room(9).open();
+  Renderer renderer(device(), pack);
   for (const Select select : {Select::per_light, Select::light_clusters}) {
     for (const uint64_t cubes : {1u, 4u}) {
       RenderSettings settings = room_settings(recipe_with(select, Filter::pcf, 0.8f));
@@ -148,7 +152,8 @@ TEST_F(RecipesTest, MapsThatTakeTurnsInTheStoreGiveTheSamePicture) {
 // More lights than a word of a tile has bits, and than a work group has threads; a picture that ends within a tile.
 TEST_F(RecipesTest, TilesGiveThePictureOfAllLights) {
   for (const uint32_t lights : {5u, 70u, 600u}) {
-    Renderer renderer(device(), small_room(lights).open());
+    const pack::File pack = small_room(lights).open();
+    Renderer renderer(device(), pack);
     for (const Deliver deliver : {Deliver::inlined, Deliver::textures}) {
       RenderSettings settings = room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.4f));
       settings.width = 117;
@@ -166,7 +171,8 @@ TEST_F(RecipesTest, TilesGiveThePictureOfAllLights) {
 
 // A byte holds hard visibility exactly, and filtered visibility to half a 255th of each light's share.
 TEST_F(RecipesTest, VisibilityTexturesGiveThePictureOfInlineVisibility) {
-  Renderer renderer(device(), small_room(20).open());
+  const pack::File pack = small_room(20).open();
+  Renderer renderer(device(), pack);
   for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     RenderSettings settings = room_settings(recipe_with(Select::per_light, filter, 0));
     const Frame inlined = frame(renderer, settings);
@@ -186,7 +192,8 @@ TEST_F(RecipesTest, RaysAreAskedAboutEveryVisiblePoint) {
   Scene scene;
   scene.add(level_square({0, 0, 0}, 50.0f), scene.add_material(plain_material(glm::vec3(0.5f))));
   scene.lights = {point_light({0, 2, 0}, 10, 5), directional_light({0, -1, 0}, 1)};
-  Renderer renderer(device(), scene.open());
+  const pack::File pack = scene.open();
+  Renderer renderer(device(), pack);
   RenderSettings settings = room_settings(presets().back().recipe);
   ASSERT_EQ(settings.recipe.filter, Filter::rays);
   const Frame lit = frame(renderer, settings);
@@ -215,7 +222,8 @@ TEST_F(RecipesTest, RaysAreAskedAboutEveryVisiblePoint) {
 }
 
 TEST_F(RecipesTest, CullingChangesWorkButNotThePicture) {
-  Renderer renderer(device(), small_room(12).open());
+  const pack::File pack = small_room(12).open();
+  Renderer renderer(device(), pack);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
   const Frame culled = frame(renderer, settings);
   settings.recipe.cull = Cull::none;
@@ -241,7 +249,8 @@ TEST_F(RecipesTest, TheSameFrameTwiceIsTheSameBits) {
 }
 
 TEST_F(RecipesTest, SizesMayChangeFromFrameToFrame) {
-  Renderer renderer(device(), small_room(6).open());
+  const pack::File pack = small_room(6).open();
+  Renderer renderer(device(), pack);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
   const Frame first = frame(renderer, settings);
   settings.width = 61;
@@ -264,7 +273,8 @@ TEST_F(RecipesTest, MoreLightsThanACubeArrayHolds) {
   Recipe recipe = recipe_with(Select::per_light, Filter::hard, 0);
   recipe.face_size_px = 16;
   const auto settings = settings_for(look({0, 8, 0.1f}, {0, 0, 0}, 1.0f), 64, 64, recipe);
-  Renderer renderer(device(), scene.open());
+  const pack::File pack = scene.open();
+  Renderer renderer(device(), pack);
   const Frame all = frame(renderer, settings);
   EXPECT_EQ(all.stats.shadow_maps, count);
   EXPECT_EQ(all.stats.shadow_bytes, count * cube_bytes(16));
@@ -282,7 +292,8 @@ TEST_F(RecipesTest, MoreLightsThanACubeArrayHolds) {
 }
 
 TEST_F(RecipesTest, StagesAreTimedHoweverManyRoundsThereAre) {
-  Renderer renderer(device(), small_room(800).open());
+  const pack::File pack = small_room(800).open();
+  Renderer renderer(device(), pack);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
   settings.width = settings.height = 16;
   settings.recipe.face_size_px = 16;
@@ -295,7 +306,8 @@ TEST_F(RecipesTest, StagesAreTimedHoweverManyRoundsThereAre) {
 }
 
 TEST_F(RecipesTest, WhatIsExposedTooLongIsWhite) {
-  Renderer renderer(device(), small_room(5).open());
+  const pack::File pack = small_room(5).open();
+  Renderer renderer(device(), pack);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
   settings.exposure_ev = 75.0f;
   const Picture picture = frame(renderer, settings).picture;
@@ -311,7 +323,8 @@ TEST_F(RecipesTest, WhatIsExposedTooLongIsWhite) {
 TEST_F(RecipesTest, NoLightsLeaveBlackAndAmbient) {
   Scene scene = small_room(0);
   scene.lights.clear();
-  Renderer renderer(device(), scene.open());
+  const pack::File pack = scene.open();
+  Renderer renderer(device(), pack);
   for (const Preset& preset : presets()) {
     RenderSettings settings = room_settings(preset.recipe);
     settings.exposure_ev.reset();
@@ -328,7 +341,8 @@ TEST_F(RecipesTest, NoTriangles) {
   Scene scene;
   scene.lights = {point_light({0, 1, 0}, 10, 5), directional_light({0, -1, 0}, 1),
                   spot_light({0, 1, 0}, {0, -1, 0}, 10, 5, 0.1f, 0.2f)};
-  Renderer renderer(device(), scene.open());
+  const pack::File pack = scene.open();
+  Renderer renderer(device(), pack);
   for (const Preset& preset : presets()) {
     for (const Cull cull : {Cull::none, Cull::light_frustum}) {
       RenderSettings settings = room_settings(preset.recipe);
@@ -353,7 +367,8 @@ TEST_F(RecipesTest, OnlyMaskedSurfaces) {
   scene.lights = {point_light({0, 3, 0}, 10, 8)};
   Recipe recipe = recipe_with(Select::per_light, Filter::hard, 0);
   recipe.shade = Shade::lambert;
-  Renderer renderer(device(), scene.open());
+  const pack::File pack = scene.open();
+  Renderer renderer(device(), pack);
   const RenderSettings settings = settings_for(look({0, 0.9f, 0}, {0, 0, 0}, 0.5f * pi), 64, 64, recipe);
   const Picture picture = frame(renderer, settings).picture;
   EXPECT_EQ(radiance_at(picture, 60, 32), glm::vec3(0.0f));  // a hole: nothing there
@@ -362,7 +377,8 @@ TEST_F(RecipesTest, OnlyMaskedSurfaces) {
 }
 
 TEST_F(RecipesTest, WhatCannotBeRenderedIsRefused) {
-  Renderer renderer(device(), small_room(1).open());
+  const pack::File pack = small_room(1).open();
+  Renderer renderer(device(), pack);
   RenderSettings settings = room_settings(recipe_with(Select::light_clusters, Filter::hard, 0.5f));
   EXPECT_THROW(renderer.draw(settings), std::invalid_argument);
   settings.recipe.d_init_m = 0.0f;

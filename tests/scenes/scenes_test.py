@@ -104,6 +104,16 @@ class Examples(SceneTest):
             stats, _ = play(pack, "--preset", "lightcluster", "--d-init", d_init)
             self.assertEqual(stats["counters"]["light_clusters"], clusters, d_init)
 
+    def test_walls_keep_light_clusters_in_their_rooms(self):
+        pack = bake_example("rooms", self.folder)
+        found = {walls: compare(pack, "--camera", "house", "--walls", walls) for walls in ("none", "rays")}
+        maps = {walls: each["b"]["counters"]["shadow_maps"] for walls, each in found.items()}
+        self.assertEqual(maps, {"none": 8, "rays": 16}, "a sconce's two bulbs share a map, back to back two sconces do not")
+        self.assertEqual(found["rays"]["a"]["counters"]["shadow_maps"], 32)
+        rmse_shown = {walls: each["rmse"]["shown"] for walls, each in found.items()}
+        self.assertGreater(rmse_shown["none"], 0.15, "half the rooms are dark")
+        self.assertLess(rmse_shown["rays"], rmse_shown["none"] / 4)
+
 
 class Truth(SceneTest):
     def test_the_reference_comes_near_it(self):

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Walls between lights: the metric of light clusters knows no geometry, and would let a cluster reach through one.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+
+#include "lights/occupancy.h"
+#include "lights/wall_test.h"
+#include "rays/pack_rays.h"
+
+namespace chandelier::lights {
+
+/// Something lies between that cannot be stepped around: on every one of eight detours, aside, straight on and back,
+/// there is something too. Aside is half as far as the points are apart, so a wall covers 45 degrees as seen from
+/// either.
+bool wall_between(const rays::PackRays& rays, const glm::vec3& a_ws, const glm::vec3& b_ws);
+
+/// Answers for pairs of a pack's lights, and remembers them for lights that do not move.
+class Walls {
+ public:
+  /// What they refer to must outlive it.
+  Walls(const pack::View& pack, const rays::PackRays& rays) : lights_(pack.lights), rays_(rays), occupancy_(pack) {}
+
+  /// Neither may be directional. The same whichever comes first.
+  bool between(WallTest test, uint32_t light, uint32_t other);
+
+ private:
+  bool find(WallTest test, uint32_t light, uint32_t other) const;
+
+  std::span<const pack::Light> lights_;
+  const rays::PackRays& rays_;
+  Occupancy occupancy_;
+  std::unordered_map<uint64_t, bool> known_[3];  // by WallTest; a pair is one number, the lower light above
+};
+
+}  // namespace chandelier::lights
