@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/frame_plan.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "shadows/deliver/visibility_textures.h"
 #include "shadows/project/shadow_views.h"
+#include "shadows/store/cube_array.h"
 
 namespace chandelier {
 namespace {
@@ -69,6 +71,26 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
   plan.views.push_back({.clip_from_world = plan.view.clip_from_world});
   plan.project_ms = ms_since(start);
   return plan;
+}
+
+FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights) {
+  const uint64_t map_bytes = cube_bytes(settings.recipe.face_size_px);
+  FrameStats stats;
+  stats.lights = lights;
+  stats.lights_in_view = plan.list.lights.size();
+  stats.light_clusters = plan.list.maps.size();
+  stats.reference_path = plan.recipe.select != settings.recipe.select;
+  stats.shadow_maps = plan.recipe.filter == Filter::rays ? 0 : plan.list.maps.size();
+  stats.shadow_views = plan.views.size() - 1;
+  stats.shadow_bytes = stats.shadow_maps * map_bytes;
+  for (const Round& round : plan.rounds) {
+    const uint64_t held = stats.shadow_maps == 0 ? 0 : round.map_count * map_bytes;
+    stats.shadow_pool_bytes = std::max(stats.shadow_pool_bytes, held);
+    stats.visibility_bytes += round.visibility_bytes;
+    stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, round.visibility_bytes);
+  }
+  stats.shadow_rounds = plan.rounds.size();
+  return stats;
 }
 
 }  // namespace chandelier

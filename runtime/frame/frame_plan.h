@@ -3,6 +3,7 @@
 // that a frame's cost can be told without one.
 #pragma once
 
+#include "frame/frame_stats.h"
 #include "frame/render_settings.h"
 #include "frame/rounds.h"
 #include "lights/light_list.h"
@@ -23,5 +24,8 @@ struct FramePlan {
 /// `walls` as select_lights() has it.
 FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
                      const RoundLimits& limits, lights::Walls* walls);
+
+/// What is known of a frame before it is drawn: all but times, exposure, draws and triangles. `lights`: in the pack.
+FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights);
 
 }  // namespace chandelier

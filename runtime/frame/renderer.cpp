@@ -25,8 +25,6 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-constexpr uint64_t most_draws = uint64_t{1} << 20;  // of a round, unless one light alone needs more: 32 MiB
-
 // A list that the CPU writes and shaders read, every frame anew.
 struct Streamed {
   gpu::Buffer staging;
@@ -115,7 +113,7 @@ FramePlan Renderer::Impl::plan(const RenderSettings& settings) {
   const uint64_t batch_instances = std::max(1u, scene.batch_instance_count);
   return plan_frame(scene.lights, scene.bounds, settings,
                     {.maps = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes),
-                     .views = most_draws / batch_instances,
+                     .views = most_draws_of_round / batch_instances,
                      .visibility_bytes = device.limits.maxStorageBufferRange},
                     walls_for(settings.recipe));
 }
@@ -283,31 +281,17 @@ void Renderer::Impl::draw_by_rays(const RenderSettings& settings, const FramePla
 }
 
 FrameStats Renderer::Impl::read_stats(const RenderSettings& settings, const FramePlan& plan) {
-  FrameStats stats;
+  FrameStats stats = planned_stats(plan, settings, scene.lights.size());
   for (const auto& stage : timers.read()) stats.stages.push_back({stage.name, stage.gpu_ms, stage.cpu_ms});
   frame::LuminanceSum exposure;
   std::memcpy(&exposure, exposure_readback.mapped, sizeof exposure);
   stats.exposure_ev = exposure.exposure_ev;
-  stats.lights = scene.lights.size();
-  stats.lights_in_view = plan.list.lights.size();
-  stats.light_clusters = plan.list.maps.size();
-  stats.reference_path = plan.recipe.select != settings.recipe.select;
-  stats.shadow_maps = plan.recipe.filter == Filter::rays ? 0 : plan.list.maps.size();
-  stats.shadow_views = plan.views.size() - 1;
   for (size_t i = 0; i < plan.rounds.size(); ++i) {
     frame::CullCounters round;
     std::memcpy(&round, counters_readback.mapped + i * sizeof round, sizeof round);
     stats.shadow_draws += round.draws;
     stats.shadow_triangles += round.triangles;
   }
-  stats.shadow_bytes = stats.shadow_maps * cube_bytes(settings.recipe.face_size_px);
-  for (const Round& round : plan.rounds) {
-    const uint64_t held = stats.shadow_maps == 0 ? 0 : round.map_count * cube_bytes(settings.recipe.face_size_px);
-    stats.shadow_pool_bytes = std::max(stats.shadow_pool_bytes, held);
-    stats.visibility_bytes += round.visibility_bytes;
-    stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, round.visibility_bytes);
-  }
-  stats.shadow_rounds = plan.rounds.size();
   return stats;
 }
 

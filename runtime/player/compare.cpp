@@ -61,6 +61,7 @@ Run side_run(const Options& options, const NamedCamera& camera, const gpu::Devic
   run.settings = side.settings;
   run.frames = static_cast<uint32_t>(side.frames.size());
   run.stats = medians(side.frames);
+  run.shared_maps = options.recipes[index].shared_maps;
   const bool same = options.recipes[0].preset == options.recipes[1].preset;
   const std::string stem = same ? fmt::format("{}_{}", run.preset, index == 0 ? 'a' : 'b') : run.preset;
   run.image = stem + ".png";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// chandelier-play: draws a pack in a window, into a picture, or with two presets side by side.
+// chandelier-play: draws a pack in a window, into a picture, or with two presets side by side, or predicts a frame.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,11 +7,13 @@
 #include <exception>
 #include <memory>
 
+#include "player/budget.h"
 #include "player/camera.h"
 #include "player/compare.h"
 #include "player/headless.h"
 #include "player/image_files.h"
 #include "player/options.h"
+#include "player/prediction.h"
 #include "player/truth.h"
 #ifndef CHANDELIER_PORTABLE
 #include "player/window.h"
@@ -39,13 +41,12 @@ int report_validation(const std::vector<std::string>& messages) {
 
 using ValidationLog = std::shared_ptr<const std::vector<std::string>>;
 
-ValidationLog draw(const Options& options) {
-  if (options.mode == Mode::headless) check_writable(options.output);
-  if (!options.stats.empty()) check_writable(options.stats);
-  const pack::File pack(options.pack);
+NamedCamera camera_of(const Options& options, const pack::File& pack) {
   const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-  const NamedCamera camera =
-      options.camera ? NamedCamera{"", *options.camera} : choose_camera(pack, options.camera_name, aspect);
+  return options.camera ? NamedCamera{"", *options.camera} : choose_camera(pack, options.camera_name, aspect);
+}
+
+ValidationLog draw(const Options& options, const NamedCamera& camera, const pack::File& pack) {
   gpu::DeviceOptions device_options;
   device_options.device = options.device;
   device_options.validation = options.validation;
@@ -70,9 +71,18 @@ ValidationLog draw(const Options& options) {
   return device.validation_log();
 }
 
-int run(const Options& options) {
+int run(Options options) {
   if (options.mode == Mode::list_devices) return list_devices();
-  const ValidationLog log = draw(options);
+  if (options.mode == Mode::headless) check_writable(options.output);
+  if (!options.stats.empty()) check_writable(options.stats);
+  const pack::File pack(options.pack);
+  const NamedCamera camera = camera_of(options, pack);
+  apply_budget(options, camera, pack);
+  if (options.mode == Mode::predict) {
+    run_prediction(options, camera, pack);
+    return 0;
+  }
+  const ValidationLog log = draw(options, camera, pack);
   return options.validation ? report_validation(*log) : 0;
 }
 

@@ -29,11 +29,12 @@ struct Typed {
   std::string pack, output, size = "1280x720", camera, stats, device, preset, exposure = "auto", compare, report;
   std::optional<uint32_t> frames;
   bool list_devices = false;
+  bool predict = false;
   bool validation = false;
   std::vector<std::string> answers;  // one per stage; empty where not given
   std::optional<float> d_init, z_far, reference_share;
   std::string distance_scaling, dynamic_lights, area_radius, walls;
-  std::optional<uint32_t> face_size, shadow_budget;
+  std::optional<uint32_t> face_size, shadow_budget, max_shadow_maps, max_shadow_bytes;
   float ambient = 0.0f;
 };
 
@@ -78,6 +79,7 @@ std::string footer() {
       "--stats frame.json\n"
       "  chandelier-play scene.chandelier --compare reference,lightcluster --report report\n"
       "  chandelier-play scene.chandelier --compare truth,lightcluster --report report\n"
+      "  chandelier-play scene.chandelier --predict --preset lightcluster --max-shadow-maps 24\n"
       "\nExit status: 0 done, 1 failed (or the validation layer spoke), 2 wrong usage.";
   return text;
 }
@@ -99,6 +101,8 @@ void declare_output(CLI::App& app, Typed& typed) {
   app.add_option("--stats", typed.stats, "Write times and counters as JSON")->type_name("FILE.json")->group("Output");
   app.add_option("--compare", typed.compare, "Draw with two presets and report their difference")
       ->type_name("A,B")
+      ->group("Output");
+  app.add_flag("--predict", typed.predict, "Say what a frame will take, without drawing it or opening a device")
       ->group("Output");
   app.add_option("--report", typed.report, "Folder for what --compare writes; made if it is missing")
       ->type_name("DIR")
@@ -202,6 +206,18 @@ void declare_recipe(CLI::App& app, Typed& typed) {
       ->group(group);
 }
 
+void declare_budget(CLI::App& app, Typed& typed) {
+  const std::string group = "Budget (chooses d-init: as many shadow maps as it allows)";
+  app.add_option("--max-shadow-maps", typed.max_shadow_maps, "Most shadow maps of a frame")
+      ->type_name("N")
+      ->check(number_between(1, 1e9))
+      ->group(group);
+  app.add_option("--max-shadow-bytes", typed.max_shadow_bytes, "Most depth of all shadow maps of a frame, MiB")
+      ->type_name("MIB")
+      ->check(number_between(1, 1 << 20))
+      ->group(group);
+}
+
 template <typename T>
 bool whole_number(std::string_view text, T& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -272,6 +288,17 @@ NamedRecipe make_side(const std::string& preset_name, Typed typed) {
   return make_recipe(preset_name, typed);
 }
 
+void read_budget(const Typed& typed, Options& options) {
+  if (typed.max_shadow_maps) options.budget.max_shadow_maps = *typed.max_shadow_maps;
+  if (typed.max_shadow_bytes) options.budget.max_shadow_bytes = uint64_t{*typed.max_shadow_bytes} << 20;
+  if (!options.budget.is_given()) return;
+  const std::string_view option = typed.max_shadow_maps ? "--max-shadow-maps" : "--max-shadow-bytes";
+  if (typed.d_init) throw UsageError(fmt::format("{}: cannot be used with --d-init, which it chooses", option));
+  if (std::none_of(options.recipes.begin(), options.recipes.end(),
+                   [](const NamedRecipe& each) { return each.recipe.select != Select::per_light; }))
+    throw UsageError(fmt::format("{}: needs light clusters, such as --preset lightcluster", option));
+}
+
 void read_comparison(const Typed& typed, Options& options) {
   const auto comma = typed.compare.find(',');
   if (comma == std::string::npos)
@@ -282,6 +309,7 @@ void read_comparison(const Typed& typed, Options& options) {
   if (!typed.stats.empty())
     throw UsageError("--compare: cannot be used with --stats; --report DIR gets comparison.json");
   if (!typed.preset.empty()) throw UsageError("--compare: cannot be used with --preset; A and B are presets");
+  if (typed.predict) throw UsageError("--compare: cannot be used with --predict");
   for (std::size_t i = 0; i < typed.answers.size(); ++i)
     if (stage_choices()[i].stage == "select" && !typed.answers[i].empty())
       throw UsageError("--compare: cannot be used with --select, which would make both sides select alike");
@@ -293,14 +321,19 @@ void read_comparison(const Typed& typed, Options& options) {
 
 void read_single(const Typed& typed, Options& options) {
   if (!typed.report.empty()) throw UsageError("--report: needs --compare A,B");
-  if (!typed.output.empty()) {
+  if (typed.predict) {
+    if (!typed.output.empty()) throw UsageError("--predict: cannot be used with --output; it draws nothing");
+    if (typed.frames) throw UsageError("--predict: cannot be used with --frames; it draws none");
+    options.mode = Mode::predict;
+    options.stats = typed.stats;
+  } else if (!typed.output.empty()) {
     if (!image_kind(typed.output))
       throw UsageError(fmt::format("--output: must end in {} ({})", image_kinds_text(), typed.output));
     options.mode = Mode::headless;
     options.output = typed.output;
     options.stats = typed.stats;
   } else {
-    if (!typed.stats.empty()) throw UsageError("--stats: needs --output FILE");
+    if (!typed.stats.empty()) throw UsageError("--stats: needs --output FILE or --predict");
 #ifdef CHANDELIER_PORTABLE
     throw UsageError("this portable build opens no window: use --output FILE.png or --compare A,B");
 #endif
@@ -328,6 +361,7 @@ Options checked(const Typed& typed) {
     read_single(typed, options);
   else
     read_comparison(typed, options);
+  read_budget(typed, options);
   return options;
 }
 
@@ -349,6 +383,7 @@ Parsed parse_options(const std::vector<std::string>& arguments) {
   declare_view(app, typed);
   declare_device(app, typed);
   declare_recipe(app, typed);
+  declare_budget(app, typed);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them last first
     return {checked(typed), 0, {}};

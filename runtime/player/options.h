@@ -9,23 +9,27 @@
 #include <vector>
 
 #include "frame/renderer.h"
+#include "player/stats.h"
+#include "predict/d_init_search.h"
 
 namespace chandelier::player {
 
-enum class Mode { list_devices, headless, compare, window };
+enum class Mode { list_devices, headless, compare, predict, window };
 
 struct NamedRecipe {
   std::string preset;
-  Recipe recipe;  // the preset's, with every explicit setting applied
+  Recipe recipe;                                      // the preset's, with every explicit setting applied
+  std::optional<std::vector<SharedMap>> shared_maps;  // where a budget chose d_init
 };
 
 struct Options {
   Mode mode = Mode::window;
   std::filesystem::path pack;
   std::filesystem::path output;      // Mode::headless
-  std::filesystem::path stats;       // Mode::headless; empty: none
+  std::filesystem::path stats;       // Mode::headless, Mode::predict; empty: none
   std::filesystem::path report;      // Mode::compare: a folder
   std::vector<NamedRecipe> recipes;  // two in Mode::compare, else one
+  Budget budget;                     // chooses d_init of recipes with light clusters
   uint32_t width = 1280;
   uint32_t height = 720;
   std::string camera_name;         // empty: the pack's first

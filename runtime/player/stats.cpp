@@ -66,6 +66,22 @@ Json recipe_json(const Recipe& recipe) {
   return json;
 }
 
+Json size_json(const RenderSettings& settings) {
+  return {{"width", settings.width}, {"height", settings.height}};
+}
+
+Json counters_json(const FrameStats& stats) {
+  Json counts = Json::object();
+  for (const Counter& counter : counters()) counts[std::string(counter.name)] = stats.*counter.value;
+  return counts;
+}
+
+Json shared_maps_json(const std::vector<SharedMap>& shared) {
+  Json json = Json::array();
+  for (const SharedMap& each : shared) json.push_back({{"light", each.light}, {"map_of", each.map_of}});
+  return json;
+}
+
 }  // namespace
 
 std::span<const Counter> counters() {
@@ -86,12 +102,10 @@ Json to_json(const Run& run) {
   Json stages = Json::array();
   for (const StageTime& stage : run.stats.stages)
     stages.push_back({{"name", stage.name}, {"gpu_ms", stage.gpu_ms}, {"cpu_ms", stage.cpu_ms}});
-  Json counts = Json::object();
-  for (const Counter& counter : counters()) counts[std::string(counter.name)] = run.stats.*counter.value;
   Json json = {{"pack", run.pack},
                {"device", run.device},
                {"driver", run.driver},
-               {"size", {{"width", run.settings.width}, {"height", run.settings.height}}},
+               {"size", size_json(run.settings)},
                {"camera", camera_json(run.camera)},
                {"preset", run.preset},
                {"recipe", recipe_json(run.settings.recipe)},
@@ -100,10 +114,21 @@ Json to_json(const Run& run) {
                {"frames", run.frames},
                {"frame_ms", run.stats.frame_ms},
                {"stages", std::move(stages)},
-               {"counters", std::move(counts)}};
+               {"counters", counters_json(run.stats)}};
   if (!run.image.empty()) json["image"] = run.image;
   if (!run.radiance.empty()) json["radiance"] = run.radiance;
+  if (run.shared_maps) json["lights_without_own_map"] = shared_maps_json(*run.shared_maps);
   return json;
+}
+
+Json prediction_json(const Run& run) {
+  return {{"pack", run.pack},
+          {"size", size_json(run.settings)},
+          {"camera", camera_json(run.camera)},
+          {"preset", run.preset},
+          {"recipe", recipe_json(run.settings.recipe)},
+          {"counters", counters_json(run.stats)},
+          {"lights_without_own_map", shared_maps_json(*run.shared_maps)}};
 }
 
 }  // namespace chandelier::player

@@ -14,6 +14,12 @@
 
 namespace chandelier::player {
 
+/// Names of a light, and of the light whose shadow map it takes.
+struct SharedMap {
+  std::string light;
+  std::string map_of;
+};
+
 /// One recipe drawn a number of times.
 struct Run {
   std::string pack;  // file name, without folders
@@ -26,6 +32,7 @@ struct Run {
   FrameStats stats;      // medians of the times; counters of the last frame
   std::string image;     // the picture's file name; empty: none
   std::string radiance;  // the EXR's; empty: none
+  std::optional<std::vector<SharedMap>> shared_maps;
 };
 
 struct Counter {
@@ -40,5 +47,8 @@ std::span<const Counter> counters();
 FrameStats medians(std::span<const FrameStats> frames);
 
 nlohmann::ordered_json to_json(const Run& run);
+
+/// Of a run that was predicted, not drawn.
+nlohmann::ordered_json prediction_json(const Run& run);
 
 }  // namespace chandelier::player

@@ -168,6 +168,52 @@ class Headless(PlayTest):
         self.assertRegex(self.play_well("--version").stdout, r"chandelier-play \d+\.\d+\.\d+")
 
 
+class Predict(PlayTest):
+    """--predict and budgets; that predictions come true is tested on whole scenes, in tests/scenes."""
+
+    def predict(self, *arguments):
+        done = self.play(self.pack, "--predict", "--stats", "p.json", *SMALL, *arguments,
+                         env={**os.environ, "VK_DRIVER_FILES": "/nowhere.json"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads((self.folder / "p.json").read_text())
+        schema_validator("prediction.schema.json").validate(told)
+        return told, done
+
+    def test_prints_what_it_writes_and_needs_no_driver(self):
+        told, done = self.predict("--preset", "lightcluster")
+        self.assertEqual(done.stderr, "")
+        rows = dict(line.split(maxsplit=1) for line in done.stdout.splitlines()[1:])
+        for name in ("lights", "shadow_maps", "shadow_triangles", "shadow_draws"):
+            self.assertEqual(rows[name], str(told["counters"][name]))
+        self.assertGreater(told["counters"]["shadow_triangles"], 0)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["p.json"])
+
+    def test_budgets_name_the_lights_that_lose_their_map(self):
+        told, done = self.predict("--preset", "lightcluster", "--max-shadow-maps", 9)
+        maps, shared = told["counters"]["shadow_maps"], told["lights_without_own_map"]
+        self.assertLessEqual(maps, 9)
+        self.assertEqual(len(shared), LIGHTS - maps)
+        names = {f"Light {i}" for i in range(LIGHTS)}
+        without = {each["light"] for each in shared}
+        self.assertLessEqual(without, names)
+        self.assertLessEqual({each["map_of"] for each in shared}, names - without)
+        self.assertRegex(done.stderr, r"\Alightcluster: over budget [^\n]*Light \d+ \(Light \d+'s\), [^\n]* and \d+ more\n\Z")
+        drawn = self.stats("--preset", "lightcluster", "--max-shadow-maps", 9)
+        self.assertEqual(drawn["lights_without_own_map"], shared)
+        self.assertEqual(drawn["recipe"], told["recipe"])
+
+    def test_a_budget_for_every_light_is_silent(self):
+        told, done = self.predict("--preset", "lightcluster", "--max-shadow-maps", LIGHTS)
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(told["recipe"]["settings"]["d_init_m"], 0)
+        self.assertEqual(told["lights_without_own_map"], [])
+
+    def test_bytes_are_a_budget_too(self):
+        told, _ = self.predict("--preset", "lightcluster", "--max-shadow-bytes", 1)
+        self.assertLessEqual(told["counters"]["shadow_bytes"], 1 << 20)
+        self.assertGreater(told["counters"]["shadow_bytes"], 1 << 19)
+
+
 class BadInput(PlayTest):
     def bad_pack(self, content):
         path = self.folder / "bad.chandelier"

@@ -52,7 +52,8 @@ class BiasTest : public GpuTest {
 
   // A lone receiver that nothing can shadow has not one darker pixel, with any filter, radius and resolution.
   void expect_no_speckle(Scene scene, const pack::Light& light, const Camera& camera, const std::string& name) {
-    Renderer renderer(device(), with_light(scene, light).open());
+    const pack::File pack = with_light(scene, light).open();
+    Renderer renderer(device(), pack);
     const RenderSettings bare = settings_for(camera, size_px, size_px, clustered(Filter::hard, 0.0f, 64));
     const Picture expected = frame(renderer, without_shadows(bare));
     uint32_t lit = 0;
@@ -134,7 +135,8 @@ TEST_F(BiasTest, ShadowBeginsAtTheContact) {
   Scene scene = lone(level_square(glm::vec3(0.0f), 8));
   scene.add(quad({1, 1, 0}, {1, 1, 0}, {0, 0, -2}), 0);
   const glm::vec3 lamp(0.3f, 4.0f, 0.2f);
-  Renderer renderer(device(), with_light(scene, point_light(lamp, 30, 20)).open());
+  const pack::File pack = with_light(scene, point_light(lamp, 30, 20)).open();
+  Renderer renderer(device(), pack);
   for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     for (const uint32_t face_size_px : {128u, 512u}) {
       const float d_init_m = filter == Filter::hard ? 0.0f : 0.5f;
@@ -187,7 +189,8 @@ TEST_F(BiasTest, PenumbraIsThatOfADiscLight) {
     const Edge edge{height_m, lamp_height_m, frame::disc_radius_per_d_min * d_init_m};
     Scene scene = lone(level_square(glm::vec3(0.0f), 8));
     scene.add(quad({-4, height_m, 0}, {4, 0, 0}, {0, 0, -8}), 0);
-    Renderer renderer(device(), with_light(scene, point_light({0, lamp_height_m, 0}, 30, 20)).open());
+    const pack::File pack = with_light(scene, point_light({0, lamp_height_m, 0}, 30, 20)).open();
+    Renderer renderer(device(), pack);
     // From below the half plane, always as much of the floor.
     Camera camera = look({0, 0.999f * std::min(camera_height_m, height_m), 0}, {0, 0, 0}, yfov_rad);
     camera.yfov_rad = 2.0f * std::atan(std::tan(0.5f * yfov_rad) * camera_height_m / camera.eye_ws.y);

@@ -31,8 +31,8 @@ EXAMPLES = ("atrium", "cornell", "restaurant")
 GOLDEN_RMSE = 0.02
 
 
-def run(*command):
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+def run(*command, env=None):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, env=env)
     if done.returncode != 0:
         raise AssertionError(f"{' '.join(map(str, command))}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
 
@@ -42,6 +42,13 @@ def play(pack, *options):
     stats, picture = pack.with_suffix(".json"), pack.with_suffix(".pfm")
     run(PLAY, pack, "--output", picture, "--stats", stats, "--validation", *SIZE, *options)
     return json.loads(stats.read_text()), read_pfm(picture)
+
+
+def predict(pack, *options):
+    """Without any Vulkan driver."""
+    stats = pack.with_suffix(".predicted.json")
+    run(PLAY, pack, "--predict", "--stats", stats, *SIZE, *options, env={**os.environ, "VK_DRIVER_FILES": "/nowhere.json"})
+    return json.loads(stats.read_text())
 
 
 def compare(pack, *options, presets="reference,lightcluster", size=SIZE):
@@ -128,6 +135,55 @@ class Truth(SceneTest):
         truth = found[2]["a"]
         self.assertEqual((truth["recipe"]["filter"], truth["counters"]["shadow_maps"]), ("rays", 0))
         self.assertEqual(truth["counters"]["lights_in_view"], found[2]["b"]["counters"]["lights_in_view"])
+
+
+class Prediction(SceneTest):
+    """What is told before a frame is drawn is what is counted then."""
+
+    RECIPES = (("--preset", "reference"), ("--preset", "reference", "--cull", "none"),
+               ("--preset", "lightcluster", "--d-init", "0.3"),
+               ("--preset", "lightcluster", "--d-init", "0.5", "--walls", "rays", "--deliver", "textures"),
+               ("--preset", "lightcluster", "--max-shadow-maps", "5"))
+
+    def check(self, pack, *options):
+        drawn, _ = play(pack, *options)
+        told = predict(pack, *options)
+        self.assertEqual(told["counters"].keys(), drawn["counters"].keys())
+        self.assertEqual(told["recipe"], drawn["recipe"])
+        for name, counted in drawn["counters"].items():
+            self.assertLessEqual(abs(told["counters"][name] - counted), 0.05 * counted, f"{name}, {options}")
+        if "--max-shadow-maps" in options:
+            self.assertEqual(told["lights_without_own_map"], drawn["lights_without_own_map"])
+        return drawn["counters"]
+
+    def check_example(self, name):
+        pack = bake_example(name, self.folder)
+        for options in self.RECIPES:
+            self.check(pack, *options)
+
+    def test_atrium(self):
+        self.check_example("atrium")
+
+    def test_cornell(self):
+        self.check_example("cornell")
+
+    def test_restaurant(self):
+        self.check_example("restaurant")
+
+    def test_rooms(self):
+        self.check_example("rooms")
+
+    def test_sponza(self):
+        pack = Sponza.bake(self)
+        for options in (("--camera", "hall"), ("--camera", "gallery", "--preset", "lightcluster")):
+            self.check(pack, *options)
+
+    def test_night_scenes(self):
+        cameras = json.loads((SOURCE / "examples/night_cameras.json").read_text())
+        pack = self.folder / "night.chandelier"
+        for scene, views in cameras.items():
+            run(BAKE, "--quiet", self.data(f"scenes/{scene}"), "-o", pack)
+            self.check(pack, "--camera=" + next(iter(views.values())), "--preset", "lightcluster", "--d-init", "1.6")
 
 
 class Sponza(SceneTest):

@@ -192,5 +192,33 @@ TEST(PlayerOptions, RefusesRecipesThatCannotBeRendered) {
   expect_refused("s --output a.png --face-size 8", *refusal(recipe));
 }
 
+TEST(PlayerOptions, PredictDrawsNothing) {
+  const Options options = accepted("scene.chandelier --predict --stats p.json --preset lightcluster --size 64x32");
+  EXPECT_EQ(options.mode, Mode::predict);
+  EXPECT_EQ(options.stats, "p.json");
+  EXPECT_FALSE(options.budget.is_given());
+  expect_refused("scene.chandelier --predict --output a.png", "--predict: cannot be used with --output");
+  expect_refused("scene.chandelier --predict --frames 3", "--predict: cannot be used with --frames");
+  expect_refused("scene.chandelier --predict --compare reference,lightcluster --report r", "--compare: cannot be used");
+}
+
+TEST(PlayerOptions, BudgetsChooseDInit) {
+  const Options options =
+      accepted("scene.chandelier --output a.png --preset lightcluster --max-shadow-maps 24 --max-shadow-bytes 100");
+  EXPECT_EQ(options.budget.max_shadow_maps, 24u);
+  EXPECT_EQ(options.budget.max_shadow_bytes, uint64_t{100} << 20);
+  accepted("scene.chandelier --compare reference,lightcluster --report r --max-shadow-maps 24");
+  expect_refused("scene.chandelier --output a.png --max-shadow-maps 24", "--max-shadow-maps: needs light clusters");
+  expect_refused("scene.chandelier --output a.png --preset lightcluster --d-init 1 --max-shadow-bytes 24",
+                 "--max-shadow-bytes: cannot be used with --d-init");
+  expect_refused("scene.chandelier --output a.png --preset lightcluster --max-shadow-maps 0", "--max-shadow-maps");
+}
+
+TEST(PlayerOptions, Walls) {
+  EXPECT_EQ(accepted("scene.chandelier").recipes.at(0).recipe.walls, WallTest::none);
+  EXPECT_EQ(accepted("scene.chandelier --preset lightcluster --walls rays").recipes.at(0).recipe.walls, WallTest::rays);
+  expect_refused("scene.chandelier --walls brick", "--walls: must be one of none, voxels, rays (brick)");
+}
+
 }  // namespace
 }  // namespace chandelier::player

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "player/budget.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace chandelier::player {
+namespace {
+
+constexpr std::size_t kMostNames = 8;  // on stderr; --stats has them all
+
+std::string name_of(const pack::File& pack, uint32_t light) {
+  const std::string_view name = pack.text(pack.view().lights[light].name);
+  return name.empty() ? fmt::format("light {}", light) : std::string(name);
+}
+
+std::string in_words(const std::vector<SharedMap>& shared) {
+  std::string text;
+  for (std::size_t i = 0; i < shared.size() && i < kMostNames; ++i)
+    text += fmt::format("{}{} ({}'s)", i == 0 ? "" : ", ", shared[i].light, shared[i].map_of);
+  if (shared.size() > kMostNames) text += fmt::format(", and {} more", shared.size() - kMostNames);
+  return text;
+}
+
+void tell(const NamedRecipe& named, const BudgetedPlan& plan) {
+  const FrameStats& stats = plan.prediction.stats;
+  if (!plan.keeps_budget)
+    fmt::print(stderr, "chandelier-play: warning: {}: no d-init keeps the budget; {} shadow maps, {} bytes are left\n",
+               named.preset, stats.shadow_maps, stats.shadow_bytes);
+  if (plan.d_init_m == 0.0f) return;
+  fmt::print(
+      stderr,
+      "{}: over budget with a shadow map for each of {} lights: d-init {:.4g} m makes {}; without their own: {}\n",
+      named.preset, stats.lights_in_view, plan.d_init_m, stats.shadow_maps, in_words(*named.shared_maps));
+}
+
+}  // namespace
+
+std::vector<SharedMap> shared_maps(const pack::File& pack, const LightList& list) {
+  std::vector<SharedMap> shared;
+  for (std::size_t i = 0; i < list.lights.size(); ++i)
+    if (list.center[i] != list.pack_light[i])
+      shared.push_back({name_of(pack, list.pack_light[i]), name_of(pack, list.center[i])});
+  return shared;
+}
+
+void apply_budget(Options& options, const NamedCamera& camera, const pack::File& pack) {
+  if (!options.budget.is_given()) return;
+  Predictor predictor(pack.view());
+  for (NamedRecipe& named : options.recipes) {
+    if (named.recipe.select == Select::per_light) continue;
+    const BudgetedPlan plan =
+        choose_d_init(predictor, render_settings(options, named.recipe, camera.camera), options.budget);
+    named.recipe.d_init_m = plan.d_init_m;
+    named.shared_maps = shared_maps(pack, plan.prediction.plan.list);
+    tell(named, plan);
+  }
+}
+
+}  // namespace chandelier::player

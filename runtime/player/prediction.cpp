@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "player/prediction.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "player/budget.h"
+#include "player/image_files.h"
+#include "player/stats.h"
+
+namespace chandelier::player {
+namespace {
+
+std::string in_units(const Counter& counter, uint64_t value) {
+  return counter.is_bytes ? fmt::format("{:.1f} MiB", static_cast<double>(value) / (1 << 20))
+                          : fmt::format("{}", value);
+}
+
+void print_table(const Run& run) {
+  fmt::print("{}: {}x{}, {}, {}\n", run.pack, run.settings.width, run.settings.height,
+             run.camera.name.empty() ? "camera by numbers" : "camera " + run.camera.name, run.preset);
+  for (const Counter& counter : counters())
+    fmt::print("  {:<22}{:>14}\n", counter.name, in_units(counter, run.stats.*counter.value));
+  fmt::print("  {:<22}{:>14}\n", "d_init_m", fmt::format("{:.4g}", run.settings.recipe.d_init_m));
+}
+
+}  // namespace
+
+void run_prediction(const Options& options, const NamedCamera& camera, const pack::File& pack) {
+  const NamedRecipe& named = options.recipes.front();
+  Predictor predictor(pack.view());
+  Run run;
+  run.pack = options.pack.filename().string();
+  run.preset = named.preset;
+  run.camera = camera;
+  run.settings = render_settings(options, named.recipe, camera.camera);
+  const Prediction prediction = predictor.predict(run.settings);
+  run.stats = prediction.stats;
+  run.shared_maps = shared_maps(pack, prediction.plan.list);
+  print_table(run);
+  if (!options.stats.empty()) write_file(options.stats, prediction_json(run).dump(2) + "\n");
+}
+
+}  // namespace chandelier::player

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The renderer's own plan_frame() and planned_stats(), and the cull stage on the CPU.
+#include "predict/prediction.h"
+
+#include <algorithm>
+
+#include "shadows/cull/count_casters.h"
+#include "shadows/store/cube_array.h"
+
+namespace chandelier {
+namespace {
+
+// What lavapipe and desktop GPUs allow.
+constexpr uint64_t most_layers = 2048;
+constexpr uint64_t most_visibility_bytes = uint64_t{128} << 20;
+
+// A device may allow less: then the frame takes more rounds, which changes no other counter.
+RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe) {
+  const uint64_t cubes = recipe.shadow_budget_bytes / cube_bytes(recipe.face_size_px);
+  return {.maps = static_cast<uint32_t>(std::clamp<uint64_t>(cubes, 1, most_layers / 6)),
+          .views = most_draws_of_round / std::max<uint64_t>(1, pack.batch_instances.size()),
+          .visibility_bytes = most_visibility_bytes};
+}
+
+}  // namespace
+
+Predictor::Predictor(const pack::View& pack) : pack_(pack) {
+  if (pack.bake_info) bounds_ = {pack.bake_info->bounds_min_ws, pack.bake_info->bounds_max_ws};
+}
+
+Prediction Predictor::plan(const RenderSettings& settings) {
+  if (settings.recipe.walls != WallTest::none && !walls_) {
+    rays_.emplace(pack_);
+    walls_.emplace(pack_, *rays_);
+  }
+  Prediction prediction;
+  prediction.plan = plan_frame(pack_.lights, bounds_, settings, limits_without_device(pack_, settings.recipe),
+                               walls_ ? &*walls_ : nullptr);
+  prediction.stats = planned_stats(prediction.plan, settings, pack_.lights.size());
+  return prediction;
+}
+
+Prediction Predictor::predict(const RenderSettings& settings) {
+  Prediction prediction = plan(settings);
+  const std::span<const frame::ShadowView> views(prediction.plan.views);
+  const CasterCounts counts = count_casters(settings.recipe.cull, views.first(prediction.stats.shadow_views), pack_);
+  prediction.stats.shadow_draws = counts.draws;
+  prediction.stats.shadow_triangles = counts.triangles;
+  return prediction;
+}
+
+}  // namespace chandelier
