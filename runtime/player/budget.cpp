@@ -51,7 +51,7 @@ void apply_budget(Options& options, const NamedCamera& camera, const pack::File&
   for (NamedRecipe& named : options.recipes) {
     if (named.recipe.select == Select::per_light) continue;
     const BudgetedPlan plan =
-        choose_d_init(predictor, render_settings(options, named.recipe, camera.camera), options.budget);
+        choose_d_init(predictor, render_settings(options, named.recipe, camera.camera, {}), options.budget);
     named.recipe.d_init_m = plan.d_init_m;
     named.shared_maps = shared_maps(pack, plan.prediction.plan.list);
     tell(named, plan);

@@ -34,7 +34,7 @@ void run_prediction(const Options& options, const NamedCamera& camera, const pac
   run.pack = options.pack.filename().string();
   run.preset = named.preset;
   run.camera = camera;
-  run.settings = render_settings(options, named.recipe, camera.camera);
+  run.settings = render_settings(options, named.recipe, camera.camera, {});
   const Prediction prediction = predictor.predict(run.settings);
   run.stats = prediction.stats;
   run.shared_maps = shared_maps(pack, prediction.plan.list);
