@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line of chandelier-play as it is typed, before its arguments are checked against each other.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace chandelier::player {
+
+constexpr uint32_t kLargestPicture = 16384;  // texels a side; no Vulkan device draws more
+
+struct Typed {
+  std::string pack, output, size = "1280x720", camera, stats, device, preset, exposure = "auto", compare, report;
+  std::optional<uint32_t> frames;
+  bool list_devices = false;
+  bool predict = false;
+  bool validation = false;
+  std::vector<std::string> answers;  // one per stage; empty where not given
+  std::optional<float> d_init, z_far, reference_share;
+  std::string distance_scaling, dynamic_lights, area_radius, walls;
+  std::optional<uint32_t> face_size, shadow_budget, max_shadow_maps, max_shadow_bytes;
+  float ambient = 0.0f;
+};
+
+std::vector<std::string> preset_names();
+
+/// Declares every option, with its help and the values that it takes alone; what is typed lands in `typed`.
+void declare_options(CLI::App& app, Typed& typed);
+
+}  // namespace chandelier::player
