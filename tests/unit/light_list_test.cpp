@@ -63,7 +63,7 @@ TEST(LightListTest, DirectionalLightsShareAMapWhereTheirDirectionsAreNear) {
   EXPECT_EQ(list.maps[0].light_count, 3u);
   EXPECT_EQ(list.map_direction_ws[0], lights[1].direction_ws);
   EXPECT_EQ(list.lights[0].direction_ws, lights[0].direction_ws);  // each keeps its own
-  EXPECT_FLOAT_EQ(list.maps[0].filter_radius_m, 1.01f);
+  EXPECT_FLOAT_EQ(list.maps[0].filter_radius_m, 0.3f * 1.01f);
   EXPECT_EQ(list.maps[1].filter_radius_m, 0.0f);
   EXPECT_EQ(list.maps[2].is_directional, 0u);
   EXPECT_EQ(select_lights(lights, clustering(0.99f), {}, 1.0f).maps.size(), 5u);
@@ -86,11 +86,11 @@ TEST(LightListTest, AreaRadiusIsDMinOrTheMembersSpread) {
   Recipe recipe = clustering(1.0f);
   LightList list = select_lights(lights, recipe, {}, 1.0f);
   ASSERT_EQ(list.maps.size(), 2u);
-  EXPECT_EQ(list.maps[0].filter_radius_m, 1.0f);
-  EXPECT_EQ(list.maps[1].filter_radius_m, 1.0f);
+  EXPECT_FLOAT_EQ(list.maps[0].filter_radius_m, 0.3f);
+  EXPECT_FLOAT_EQ(list.maps[1].filter_radius_m, 0.3f);
   recipe.area_radius = AreaRadius::spread;
   list = select_lights(lights, recipe, {}, 1.0f);
-  EXPECT_EQ(list.maps[0].filter_radius_m, 0.25f);
+  EXPECT_FLOAT_EQ(list.maps[0].filter_radius_m, 0.6f * 0.25f);
   EXPECT_EQ(list.maps[1].filter_radius_m, 0.0f);
 }
 

@@ -162,7 +162,7 @@ TEST(LightListTest, LightClustersKeepTheirLightsTogether) {
       EXPECT_EQ(map.is_directional != 0, light.type == static_cast<uint32_t>(pack::LightType::directional));
       if (map.is_directional) continue;
       EXPECT_LE(glm::distance(light.position_ws, map.center_ws) + light.range_m, map.range_m * 1.000001f);
-      EXPECT_GE(map.filter_radius_m, recipe.d_init_m);
+      EXPECT_GE(map.filter_radius_m, 0.3f * recipe.d_init_m);
     }
   }
   EXPECT_EQ(next, list.lights.size());

@@ -6,12 +6,12 @@
 #include "shadows/filter/receiver_disc.glsl"
 
 // A disc light of radius R casts a penumbra of radius R * (distance to receiver / distance to blocker - 1). PCF knows no
-// blocker. 0.08 is what came nearest to the reference on the example scenes (README.md of runtime/shadows); it fits a disc
-// of half d_min, where the members lie on average, and a blocker six sevenths of the way along.
-const float PENUMBRA_PER_D_MIN = 0.08;
+// blocker: it takes one that stands four fifths of the way along, which came nearest to the reference on the example scenes
+// (README.md of runtime/shadows).
+const float PENUMBRA_PER_RADIUS = 0.27;
 
 float pcf_radius(ShadowMap map, vec3 p) {
-  return max(SMOOTHING_TEXELS * texel_size(map, p), min(PENUMBRA_PER_D_MIN * map.filter_radius_m, 0.5 * distance(p, map.center_ws)));
+  return max(SMOOTHING_TEXELS * texel_size(map, p), min(PENUMBRA_PER_RADIUS * map.filter_radius_m, 0.5 * distance(p, map.center_ws)));
 }
 
 // The part of the taps that is lit.

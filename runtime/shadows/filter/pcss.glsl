@@ -42,7 +42,7 @@ Blockers cascade_blockers(CascadeDisc disc, float search_m) {
 // taps of the search are blocked, so are those of the narrower disc within, but for what lies between the taps.
 float cube_pcss(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
   float smoothing_m = SMOOTHING_TEXELS * texel_size(map, p);
-  float light_m = DISC_RADIUS_PER_D_MIN * map.filter_radius_m;
+  float light_m = map.filter_radius_m;
   float search_m = max(smoothing_m, min(light_m, 0.5 * distance(p, map.center_ws)));
   CubeDisc disc = cube_disc(map, p, n, pixel, search_m);
   if (light_m == 0.0) return cube_pcf(disc, smoothing_m);
@@ -58,7 +58,7 @@ float cascade_pcss(ShadowView cascade, float light_radius_m, vec3 p, vec3 n, vec
   CascadeDisc disc = cascade_disc(cascade, p, n, pixel);
   if (light_radius_m == 0.0) return cascade_pcf(disc, smoothing_m);
   vec3 depth_per_m = vec3(cascade.clip_from_world[0].z, cascade.clip_from_world[1].z, cascade.clip_from_world[2].z);
-  float spread_m = DISC_RADIUS_PER_D_MIN * light_radius_m / (view.z_far_m * length(depth_per_m));  // over the whole depth
+  float spread_m = light_radius_m / (view.z_far_m * length(depth_per_m));  // over the whole depth
   float search_m = max(smoothing_m, spread_m * (1.0 - disc.receiver.z));
   Blockers found = cascade_blockers(disc, search_m);
   if (found.count == 0u) return 1.0;
