@@ -42,24 +42,23 @@ Blockers cascade_blockers(CascadeDisc disc, float search_m) {
 // taps of the search are blocked, so are those of the narrower disc within, but for what lies between the taps.
 float cube_pcss(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
   float smoothing_m = SMOOTHING_TEXELS * texel_size(map, p);
-  float light_m = map.filter_radius_m;
-  float search_m = max(smoothing_m, min(light_m, 0.5 * distance(p, map.center_ws)));
+  float search_m = max(smoothing_m, min(map.filter_radius_m, 0.5 * distance(p, map.center_ws)));
   CubeDisc disc = cube_disc(map, p, n, pixel, search_m);
-  if (light_m == 0.0) return cube_pcf(disc, smoothing_m);
+  if (search_m == smoothing_m) return cube_pcf(disc, smoothing_m);
   Blockers found = cube_blockers(disc, search_m);
   if (found.count == 0u) return 1.0;
   if (found.count == POISSON_TAPS) return 0.0;
-  return cube_pcf(disc, clamp(light_m * (1.0 - found.mean) / found.mean, smoothing_m, search_m));
+  return cube_pcf(disc, clamp(map.filter_radius_m * (1.0 - found.mean) / found.mean, smoothing_m, search_m));
 }
 
 // A directional cluster's light stands at z_far. The search disc is what it casts from the cascade's near plane.
 float cascade_pcss(ShadowView cascade, float light_radius_m, vec3 p, vec3 n, vec2 pixel) {
   float smoothing_m = SMOOTHING_TEXELS * cascade.texel_m;
   CascadeDisc disc = cascade_disc(cascade, p, n, pixel);
-  if (light_radius_m == 0.0) return cascade_pcf(disc, smoothing_m);
   vec3 depth_per_m = vec3(cascade.clip_from_world[0].z, cascade.clip_from_world[1].z, cascade.clip_from_world[2].z);
   float spread_m = light_radius_m / (view.z_far_m * length(depth_per_m));  // over the whole depth
   float search_m = max(smoothing_m, spread_m * (1.0 - disc.receiver.z));
+  if (search_m == smoothing_m) return cascade_pcf(disc, smoothing_m);
   Blockers found = cascade_blockers(disc, search_m);
   if (found.count == 0u) return 1.0;
   if (found.count == POISSON_TAPS) return 0.0;
