@@ -14,6 +14,8 @@ struct Camera {
   glm::vec3 up_ws{0.0f, 1.0f, 0.0f};
   float yfov_rad = 1.0f;
   float znear_m = 0.05f;
+
+  bool operator==(const Camera&) const = default;
 };
 
 /// Right, up and forward, orthonormal. An `up` along `forward` is replaced by another axis.

@@ -50,14 +50,18 @@ Recipe reference_of(Recipe recipe) {
 }  // namespace
 
 FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
-                     const RoundLimits& limits, lights::Walls* walls) {
+                     const RoundLimits& limits, Surroundings* surroundings) {
   const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+  const SelectAids aids{.surroundings = surroundings,
+                        .ambient = settings.ambient,
+                        .exposure_ev = settings.exposure_ev,
+                        .centers = settings.centers};
   FramePlan plan{.recipe = settings.recipe};
   auto start = Clock::now();
-  plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, walls);
+  plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, aids);
   if (reference_is_cheaper(plan.recipe, plan.list)) {
     plan.recipe = reference_of(plan.recipe);
-    plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, walls);
+    plan.list = select_lights(lights, plan.recipe, settings.camera, aspect);
   }
   plan.select_ms = ms_since(start);
 
@@ -90,6 +94,8 @@ FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, 
     stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, round.visibility_bytes);
   }
   stats.shadow_rounds = plan.rounds.size();
+  stats.centers.assign(lights, pack::none);
+  for (size_t i = 0; i < plan.list.lights.size(); ++i) stats.centers[plan.list.pack_light[i]] = plan.list.center[i];
   return stats;
 }
 

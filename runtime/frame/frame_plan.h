@@ -21,9 +21,9 @@ struct FramePlan {
   double project_ms = 0.0;
 };
 
-/// `walls` as select_lights() has it.
+/// `surroundings` are needed as select_lights() needs them.
 FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
-                     const RoundLimits& limits, lights::Walls* walls);
+                     const RoundLimits& limits, Surroundings* surroundings);
 
 /// What is known of a frame before it is drawn: all but times, exposure, draws and triangles. `lights`: in the pack.
 FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights);

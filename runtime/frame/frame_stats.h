@@ -32,6 +32,7 @@ struct FrameStats {
   uint64_t shadow_rounds = 0;          // how often the pool was filled
   uint64_t visibility_bytes = 0;       // that all visibility textures of the frame need together
   uint64_t visibility_pool_bytes = 0;  // of them, held at a time
+  std::vector<uint32_t> centers;       // for each light of the pack whose shadow map it took; pack::none: not in view
 };
 
 }  // namespace chandelier

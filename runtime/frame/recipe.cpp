@@ -12,7 +12,7 @@ using Names = std::span<const std::string_view>;
 
 // In the order of the enumerators in recipe.h.
 constexpr std::string_view g_buffer_names[]{"depth-normal-material"};
-constexpr std::string_view select_names[]{"per-light", "light-clusters"};
+constexpr std::string_view select_names[]{"per-light", "light-clusters", "error-driven"};
 constexpr std::string_view lookup_names[]{"all", "tiles"};
 constexpr std::string_view store_names[]{"cube-array"};
 constexpr std::string_view project_names[]{"cube"};
@@ -69,6 +69,12 @@ constexpr Recipe lightcluster_recipe(Filter filter) {
   return recipe;
 }
 
+constexpr Recipe chandelier_recipe() {
+  Recipe recipe;
+  recipe.select = Select::error_driven;
+  return recipe;
+}
+
 constexpr Recipe truth_recipe() {
   Recipe recipe;
   recipe.filter = Filter::rays;
@@ -82,6 +88,8 @@ const std::array preset_list{
     Preset{"lightcluster", "one shadow map per light cluster, read by PCSS (LightCluster)",
            lightcluster_recipe(Filter::pcss)},
     Preset{"lightcluster-pcf", "the same, read by PCF", lightcluster_recipe(Filter::pcf)},
+    Preset{"chandelier", "as few shadow maps as look no worse than light clusters, by the error that they make",
+           chandelier_recipe()},
     Preset{"truth", "rays from every visible point to every light, on the CPU: what shadow maps are measured against",
            truth_recipe()},
 };

@@ -14,7 +14,7 @@
 namespace chandelier {
 
 enum class GBuffer : uint32_t { depth_normal_material };
-enum class Select : uint32_t { per_light, light_clusters };
+enum class Select : uint32_t { per_light, light_clusters, error_driven };
 enum class Lookup : uint32_t { all, tiles };
 enum class Store : uint32_t { cube_array };
 enum class Project : uint32_t { cube };

@@ -20,7 +20,9 @@ struct RenderSettings {
   uint32_t height = 720;
   float ambient = 0.0f;              // radiance from everywhere, for scenes that would be black without
   std::optional<float> exposure_ev;  // stops; absent: from the picture's own brightness
-  VisibilitySource visibility;       // needed by filter rays, unused by others
+  std::vector<uint32_t>
+      centers;                  // for each light of the pack whose shadow map it takes; pack::none, or empty: selected
+  VisibilitySource visibility;  // needed by filter rays, unused by others
 };
 
 }  // namespace chandelier

@@ -49,9 +49,7 @@ struct Streamed {
 
 struct Renderer::Impl {
   gpu::Device& device;
-  pack::View pack;
-  std::optional<rays::PackRays> rays;  // made when a recipe first asks for walls
-  std::optional<lights::Walls> walls;
+  Surroundings surroundings;
   GpuScene scene;
   CullPipelines cull;
   CasterPipelines casters;
@@ -75,7 +73,7 @@ struct Renderer::Impl {
 
   Impl(gpu::Device& on, const pack::File& file)
       : device(on),
-        pack(file.view()),
+        surroundings(file.view()),
         scene(upload_scene(on, file)),
         cull(make_cull_pipelines(on)),
         casters(make_caster_pipelines(on, scene)),
@@ -89,7 +87,6 @@ struct Renderer::Impl {
         gpu::make_buffer(on, sizeof(frame::LuminanceSum), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
   }
 
-  lights::Walls* walls_for(const Recipe& recipe);
   FramePlan plan(const RenderSettings& settings);
   void make_room(const RenderSettings& settings, const FramePlan& plan);
   void record_uploads(VkCommandBuffer cmd, const FramePlan& plan);
@@ -102,20 +99,13 @@ struct Renderer::Impl {
   FrameStats read_stats(const RenderSettings& settings, const FramePlan& plan);
 };
 
-lights::Walls* Renderer::Impl::walls_for(const Recipe& recipe) {
-  if (recipe.walls == WallTest::none) return nullptr;
-  if (!rays) rays.emplace(pack);
-  if (!walls) walls.emplace(pack, *rays);
-  return &*walls;
-}
-
 FramePlan Renderer::Impl::plan(const RenderSettings& settings) {
   const uint64_t batch_instances = std::max(1u, scene.batch_instance_count);
   return plan_frame(scene.lights, scene.bounds, settings,
                     {.maps = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes),
                      .views = most_draws_of_round / batch_instances,
                      .visibility_bytes = device.limits.maxStorageBufferRange},
-                    walls_for(settings.recipe));
+                    &surroundings);
 }
 
 // Images and buffers that the frame needs; what is there already and large enough is kept.

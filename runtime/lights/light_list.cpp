@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "lights/light_clusters.h"
 
@@ -45,6 +46,10 @@ struct Member {
   float filter_radius_m;
 };
 
+bool by_center(const Member& a, const Member& b) {
+  return a.center != b.center ? a.center < b.center : a.light < b.light;
+}
+
 lights::ClusterLight cluster_light(const pack::Light& light) {
   return {.position_ws = light.position_ws,
           .range_m = light.range_m,
@@ -83,12 +88,14 @@ float area_radius_m(const Recipe& recipe, const lights::LightCluster& cluster) {
 
 // `numbers` are those of the clustered lights in the pack.
 std::vector<Member> members_of_light_clusters(std::span<const pack::Light> lights, std::span<const uint32_t> numbers,
-                                              const Recipe& recipe, const Camera& camera, lights::Walls* walls) {
+                                              const Recipe& recipe, const Camera& camera, Surroundings* surroundings) {
   std::vector<lights::ClusterLight> spheres;
   for (const uint32_t i : numbers) spheres.push_back(cluster_light(lights[i]));
   lights::Blocked blocked;
   if (recipe.walls != WallTest::none)
-    blocked = [&](uint32_t a, uint32_t b) { return walls->between(recipe.walls, numbers[a], numbers[b]); };
+    blocked = [&, &walls = surroundings->walls()](uint32_t a, uint32_t b) {
+      return walls.between(recipe.walls, numbers[a], numbers[b]);
+    };
   const auto result = lights::select_light_clusters(spheres, cluster_settings(recipe, camera), blocked);
   std::vector<Member> members;
   for (uint32_t i = 0; i < numbers.size(); ++i) {
@@ -118,13 +125,60 @@ std::vector<Member> members_of_directional_clusters(std::span<const pack::Light>
 }
 
 std::vector<Member> clustered(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
-                              const Recipe& recipe, const Camera& camera, lights::Walls* walls) {
+                              const Recipe& recipe, const Camera& camera, Surroundings* surroundings) {
   std::vector<uint32_t> directional, others;
   for (const uint32_t i : in_view) (is_directional(lights[i]) ? directional : others).push_back(i);
-  auto members = members_of_light_clusters(lights, others, recipe, camera, walls);
+  auto members = members_of_light_clusters(lights, others, recipe, camera, surroundings);
   const auto far = members_of_directional_clusters(lights, directional, recipe, camera);
   members.insert(members.end(), far.begin(), far.end());
   return members;
+}
+
+// What error-driven selection makes of the same lights in view.
+std::vector<Member> members_by_error(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
+                                     std::vector<Member> clusters, const Recipe& recipe, const SampledView& view,
+                                     ErrorDriven& by_error) {
+  const auto index = [&](uint32_t light) {
+    return static_cast<uint32_t>(std::lower_bound(in_view.begin(), in_view.end(), light) - in_view.begin());
+  };
+  std::sort(clusters.begin(), clusters.end(), by_center);
+  std::vector<MapMember> of_clusters;
+  for (const Member& m : clusters) of_clusters.push_back({index(m.light), index(m.center), m.filter_radius_m});
+
+  const std::vector<MapMember> chosen = by_error.select(in_view, of_clusters, view, recipe);
+  std::vector<float> range_m(in_view.size(), 0.0f);  // LightCluster §3.1.3: C_att
+  for (const MapMember& m : chosen) {
+    const pack::Light& light = lights[in_view[m.light]];
+    const float apart = glm::distance(light.position_ws, lights[in_view[m.center]].position_ws);
+    range_m[m.center] = std::max(range_m[m.center], apart + light.range_m);
+  }
+  std::vector<Member> members;
+  for (const MapMember& m : chosen)
+    members.push_back({in_view[m.light], in_view[m.center], range_m[m.center], m.filter_radius_m});
+  return members;
+}
+
+// Lights take the maps that they are told to; a map's C_att and area light follow its lights (LightCluster §3.1.3).
+void hold_centers(std::span<const pack::Light> lights, std::span<const uint32_t> centers,
+                  std::vector<Member>& members) {
+  struct Map {
+    float range_m = 0.0f;
+    float filter_radius_m = 0.0f;
+  };
+  std::unordered_map<uint32_t, Map> maps;
+  for (Member& member : members) {
+    const pack::Light& light = lights[member.light];
+    const uint32_t held = member.light < centers.size() ? centers[member.light] : pack::none;
+    if (held < lights.size() && is_directional(lights[held]) == is_directional(light)) member.center = held;
+    const float apart = glm::distance(light.position_ws, lights[member.center].position_ws);
+    Map& map = maps[member.center];
+    if (!is_directional(light)) map.range_m = std::max(map.range_m, apart + light.range_m);
+    map.filter_radius_m = std::max(map.filter_radius_m, member.filter_radius_m);
+  }
+  for (Member& member : members) {
+    member.map_range_m = maps[member.center].range_m;
+    member.filter_radius_m = maps[member.center].filter_radius_m;
+  }
 }
 
 std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<const uint32_t> in_view) {
@@ -136,16 +190,20 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
 }  // namespace
 
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
-                        lights::Walls* walls) {
-  if (recipe.select == Select::light_clusters && recipe.walls != WallTest::none && !walls)
-    throw std::invalid_argument("select_lights: the recipe needs walls");
+                        const SelectAids& aids) {
+  const bool looks_around = recipe.select == Select::error_driven ||
+                            (recipe.select == Select::light_clusters && recipe.walls != WallTest::none);
+  if (looks_around && !aids.surroundings)
+    throw std::invalid_argument("select_lights: the recipe needs to know the lights' surroundings");
   const auto in_view = lights_in_view(lights, camera, aspect);
-  std::vector<Member> members = recipe.select == Select::light_clusters
-                                    ? clustered(lights, in_view, recipe, camera, walls)
-                                    : one_map_each(lights, in_view);
-  std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
-    return a.center != b.center ? a.center < b.center : a.light < b.light;
-  });
+  std::vector<Member> members = recipe.select == Select::per_light
+                                    ? one_map_each(lights, in_view)
+                                    : clustered(lights, in_view, recipe, camera, aids.surroundings);
+  if (recipe.select == Select::error_driven)
+    members = members_by_error(lights, in_view, std::move(members), recipe,
+                               {camera, aspect, aids.ambient, aids.exposure_ev}, aids.surroundings->by_error());
+  if (!aids.centers.empty()) hold_centers(lights, aids.centers, members);
+  std::sort(members.begin(), members.end(), by_center);
 
   LightList list;
   for (size_t i = 0; i < members.size(); ++i) {

@@ -8,7 +8,7 @@
 #include "frame/camera.h"
 #include "frame/recipe.h"
 #include "frame_schema.h"
-#include "lights/walls.h"
+#include "lights/surroundings.h"
 #include "pack_schema.h"
 
 namespace chandelier {
@@ -23,9 +23,19 @@ struct LightList {
   std::vector<uint32_t> center;             // number in the pack of the light whose map each of `lights` takes
 };
 
-/// Point and spot lights may share a map, and directional lights among themselves. `walls`, of the same lights, are
-/// needed where the recipe looks for walls; std::invalid_argument where they are missing.
+/// What a selection may go on from beside the lights. What the recipe does not ask for may be missing.
+struct SelectAids {
+  Surroundings* surroundings = nullptr;  // of the same pack; needed for walls, and to select by error
+  float ambient = 0.0f;                  // how bright the picture will be, to select by error
+  std::optional<float> exposure_ev;
+  /// For each light the number of the light whose map it shall take; pack::none, or a directional light for another or
+  /// the other way round: as selected. May be empty.
+  std::span<const uint32_t> centers;
+};
+
+/// Point and spot lights may share a map, and directional lights among themselves. Throws std::invalid_argument where
+/// the recipe needs surroundings and there are none.
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
-                        lights::Walls* walls = nullptr);
+                        const SelectAids& aids = {});
 
 }  // namespace chandelier

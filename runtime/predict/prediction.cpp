@@ -24,18 +24,14 @@ RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe) 
 
 }  // namespace
 
-Predictor::Predictor(const pack::View& pack) : pack_(pack) {
+Predictor::Predictor(const pack::View& pack) : pack_(pack), surroundings_(pack) {
   if (pack.bake_info) bounds_ = {pack.bake_info->bounds_min_ws, pack.bake_info->bounds_max_ws};
 }
 
 Prediction Predictor::plan(const RenderSettings& settings) {
-  if (settings.recipe.walls != WallTest::none && !walls_) {
-    rays_.emplace(pack_);
-    walls_.emplace(pack_, *rays_);
-  }
   Prediction prediction;
-  prediction.plan = plan_frame(pack_.lights, bounds_, settings, limits_without_device(pack_, settings.recipe),
-                               walls_ ? &*walls_ : nullptr);
+  prediction.plan =
+      plan_frame(pack_.lights, bounds_, settings, limits_without_device(pack_, settings.recipe), &surroundings_);
   prediction.stats = planned_stats(prediction.plan, settings, pack_.lights.size());
   return prediction;
 }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lights/error_driven.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace chandelier {
+namespace {
+
+constexpr float lights_times_points = 3e5f;
+constexpr float fewest_rows = 36.0f, most_rows = 72.0f;
+constexpr uint32_t judges_scatter = 1;
+
+}  // namespace
+
+SampleSettings sample_grid(size_t lights, const SampledView& view) {
+  const float points = lights_times_points / static_cast<float>(std::max<size_t>(1, lights));
+  const float rows = std::clamp(std::sqrt(points * 9.0f / 16.0f), fewest_rows, most_rows);
+  return {.columns = static_cast<uint32_t>(rows * 16.0f / 9.0f),
+          .rows = static_cast<uint32_t>(rows),
+          .ambient = view.ambient,
+          .exposure_ev = view.exposure_ev};
+}
+
+void ErrorDriven::look(std::span<const uint32_t> in_view, const SampledView& view,
+                       lights::DynamicLights dynamic_lights) {
+  if (ladder_ && view == view_ && dynamic_lights == dynamic_lights_ &&
+      std::equal(in_view.begin(), in_view.end(), in_view_.begin(), in_view_.end()))
+    return;
+  ladder_.reset();
+  view_ = view;
+  dynamic_lights_ = dynamic_lights;
+  in_view_.assign(in_view.begin(), in_view.end());
+  SampleSettings settings = sample_grid(in_view.size(), view);
+  samples_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
+  settings.scatter = judges_scatter;
+  judge_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
+  ladder_.emplace(*samples_, dynamic_lights);
+}
+
+std::vector<MapMember> ErrorDriven::select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
+                                           const SampledView& view, const Recipe& recipe) {
+  look(in_view, view, recipe.dynamic_lights);
+  const Filter soft = recipe.filter == Filter::hard ? Filter::pcss : recipe.filter;
+  const double target = estimated_rmse(*judge_, clusters, {soft, recipe.face_size_px});
+  return ladder_->within(target, *judge_, {recipe.filter, recipe.face_size_px});
+}
+
+}  // namespace chandelier

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The select answer `error-driven` for frame after frame: remembers what it found as long as nothing moves.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "frame/camera.h"
+#include "frame/recipe.h"
+#include "lights/error_selection.h"
+#include "lights/light_samples.h"
+
+namespace chandelier {
+
+/// Where the camera is and how bright its picture: what samples are taken for.
+struct SampledView {
+  Camera camera;
+  float aspect = 1.0f;
+  float ambient = 0.0f;
+  std::optional<float> exposure_ev;
+
+  bool operator==(const SampledView&) const = default;
+};
+
+/// Points over the picture: fewer where there are many lights, so that the rays to them stay about as many.
+SampleSettings sample_grid(size_t lights, const SampledView& view);
+
+class ErrorDriven {
+ public:
+  /// What `pack` points to must outlive this.
+  explicit ErrorDriven(const pack::View& pack) : scene_(pack) {}
+
+  /// The fewest shadow maps whose expected error, read by `recipe.filter`, is at most that of `clusters`. Those need a
+  /// soft filter: theirs is PCSS where the recipe says hard. All numbers of lights in `clusters` and in the answer are
+  /// indices into `in_view`, numbers in the pack in ascending order.
+  std::vector<MapMember> select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
+                                const SampledView& view, const Recipe& recipe);
+
+ private:
+  void look(std::span<const uint32_t> in_view, const SampledView& view, lights::DynamicLights dynamic_lights);
+
+  SampledScene scene_;
+  std::vector<uint32_t> in_view_;
+  SampledView view_;
+  lights::DynamicLights dynamic_lights_ = lights::DynamicLights::cluster;
+  std::optional<LightSamples> samples_;  // the search's
+  std::optional<LightSamples> judge_;    // other points, for the estimates
+  std::optional<ErrorLadder> ladder_;
+};
+
+}  // namespace chandelier

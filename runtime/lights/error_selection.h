@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The select answer `error-driven`: which lights share a shadow map, by the error that this makes in what the camera
+// sees.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lights/error_estimate.h"
+#include "lights/light_samples.h"
+
+namespace chandelier {
+
+/// Selections with ever fewer shadow maps, from one for each light down to as few as can be.
+class ErrorLadder {
+ public:
+  /// Samples must outlive this. Lights that keep a map of their own (lights::has_own_center) lend it to none.
+  ErrorLadder(const LightSamples& samples, lights::DynamicLights dynamic_lights);
+
+  uint32_t fewest_maps() const;
+  /// The best with at most `maps` of them (or fewest_maps(), where that is more), by the error of hard shadows.
+  std::vector<MapMember> with_at_most(uint32_t maps) const;
+  /// The fewest maps whose estimated_rmse() is at most `most_rmse`. `judge` is of the same view and lights, but has
+  /// other points than the ladder was made for, on which it does better than anywhere else.
+  std::vector<MapMember> within(double most_rmse, const LightSamples& judge, const ShadowReading& reading) const;
+
+ private:
+  struct Rung {
+    std::vector<uint32_t> center;  // of each light
+    double error;                  // sum of squares
+  };
+  std::vector<MapMember> members(const Rung& rung) const;
+
+  const LightSamples& samples_;
+  std::vector<Rung> rungs_;  // by the number of maps, one more each, from fewest_maps(); error never rises
+};
+
+}  // namespace chandelier

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lights/light_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "frame_schema.h"
+#include "lights/mean_materials.h"
+
+namespace chandelier {
+namespace {
+
+constexpr float far_away_m = 1e6f;
+constexpr float lift = 5e-4f;         // off the surface, of the distance to the eye: well above a ray's own rounding
+constexpr float middle_grey = 0.18f;  // shading/exposure.comp
+constexpr float darkest = 1e-6f;      // shading/exposure.comp
+
+bool is_directional(const pack::Light& light) {
+  return light.type == pack::LightType::directional;
+}
+
+// 0 to 1, the same for the same number: points lie anywhere in their cells, so that no pattern of the scene's meets the
+// grid's. Integer hash by Ettinger ("triple32", first two rounds).
+float scattered(uint32_t x) {
+  x = (x ^ x >> 17) * 0xed5ad4bbu;
+  x = (x ^ x >> 11) * 0xac4c1b51u;
+  return static_cast<float>((x ^ x >> 15) >> 8) * 0x1p-24f;
+}
+
+// Illuminance at a point and the way to the light: shading/shade.comp:incoming, shading/brdf.glsl:distance_falloff.
+struct Incoming {
+  glm::vec3 illuminance;
+  glm::vec3 to_light;
+};
+
+Incoming incoming(const pack::Light& light, const glm::vec3& p) {
+  const glm::vec3 radiant = light.color * light.intensity;
+  if (is_directional(light)) return {radiant, -light.direction_ws};
+  const glm::vec3 d = light.position_ws - p;
+  const float distance = glm::length(d);
+  const glm::vec3 to_light = d / std::max(distance, 1e-6f);
+  const float ratio = distance / light.range_m;
+  float falloff = glm::clamp(1.0f - ratio * ratio * ratio * ratio, 0.0f, 1.0f) / std::max(distance * distance, 1e-4f);
+  if (light.type == pack::LightType::spot) {
+    const float scale = 1.0f / std::max(0.001f, light.inner_cone_cos - light.outer_cone_cos);
+    const float cone = glm::clamp((glm::dot(light.direction_ws, -to_light) - light.outer_cone_cos) * scale, 0.0f, 1.0f);
+    falloff *= cone * cone;
+  }
+  return {radiant * falloff, to_light};
+}
+
+float luminance(const glm::vec3& radiance) {
+  return glm::dot(radiance, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+}  // namespace
+
+LightSamples::LightSamples(const SampledScene& scene, std::span<const uint32_t> lights, const Camera& camera,
+                           float aspect, const SampleSettings& settings)
+    : scene_(scene), numbers_(lights.begin(), lights.end()) {
+  place_points(camera, aspect, settings);
+  sees_.assign(numbers_.size() * points_.size(), unknown);
+  light_points(camera);
+  expose(settings.exposure_ev);
+}
+
+void LightSamples::place_points(const Camera& camera, float aspect, const SampleSettings& settings) {
+  const CameraAxes axes = axes_of(camera);
+  const float half_height = std::tan(camera.yfov_rad * 0.5f);
+  cell_count_ = settings.columns * settings.rows;
+  for (uint32_t cell = 0; cell < cell_count_; ++cell) {
+    const uint32_t place = 2 * (cell + settings.scatter * cell_count_);
+    const float x =
+        (static_cast<float>(cell % settings.columns) + scattered(place)) / static_cast<float>(settings.columns);
+    const float y =
+        (static_cast<float>(cell / settings.columns) + scattered(place + 1)) / static_cast<float>(settings.rows);
+    const glm::vec3 way = glm::normalize(axes.forward + axes.right * ((2.0f * x - 1.0f) * half_height * aspect) +
+                                         axes.up * ((1.0f - 2.0f * y) * half_height));
+    const auto hit = scene_.rays.first_hit(camera.eye_ws, way, far_away_m);
+    ++rays_cast_;
+    if (!hit || scene_.materials[hit->material].unlit) continue;
+    const glm::vec3 normal = glm::dot(hit->normal_ws, way) > 0.0f ? -hit->normal_ws : hit->normal_ws;
+    const glm::vec3 dark =
+        scene_.materials[hit->material].emissive + settings.ambient * scene_.materials[hit->material].base_color;
+    points_.push_back({.position_ws = camera.eye_ws + way * hit->distance_m + normal * (lift * hit->distance_m),
+                       .normal_ws = normal,
+                       .unshadowable = dark,
+                       .reference = dark});
+    material_.push_back(hit->material);
+  }
+}
+
+void LightSamples::light_points(const Camera& camera) {
+  reach_.resize(numbers_.size());
+  for (uint32_t i = 0; i < numbers_.size(); ++i) {
+    for (uint32_t p = 0; p < points_.size(); ++p) {
+      Point& point = points_[p];
+      const Incoming in = incoming(light(i), point.position_ws);
+      const float n_dot_l = glm::dot(point.normal_ws, in.to_light);
+      if (n_dot_l <= 0.0f || luminance(in.illuminance) <= 0.0f) continue;
+      const glm::vec3 to_eye = glm::normalize(camera.eye_ws - point.position_ws);
+      const glm::vec3 added =
+          in.illuminance * n_dot_l * reflected(scene_.materials[material_[p]], point.normal_ws, to_eye, in.to_light);
+      reach_[i].push_back({p, added});
+      if (sees(i, p)) point.reference += added;
+    }
+  }
+}
+
+// shading/exposure.comp: the mean of the square roots of luminance becomes middle grey.
+void LightSamples::expose(const std::optional<float>& exposure_ev) {
+  double sum = 0.0;
+  uint32_t count = 0;
+  for (const Point& point : points_) {
+    const float y = luminance(point.reference);
+    if (y <= darkest) continue;
+    sum += std::sqrt(y);
+    ++count;
+  }
+  exposure_ev_ = exposure_ev ? *exposure_ev
+                 : count > 0 ? std::log2(middle_grey) - 2.0f * static_cast<float>(std::log2(sum / count))
+                             : 0.0f;
+  const float exposure = std::exp2(exposure_ev_);
+  for (Point& point : points_) {
+    point.unshadowable *= exposure;
+    point.reference *= exposure;
+  }
+  for (auto& of_light : reach_)
+    for (Reach& reach : of_light) reach.radiance *= exposure;
+}
+
+bool LightSamples::is_lit(uint32_t i, const glm::vec3& place_ws, const glm::vec3& aside_ws) const {
+  ++rays_cast_;
+  if (is_directional(light(i))) return !scene_.rays.first_hit(place_ws, -light(i).direction_ws, far_away_m);
+  // What is nearer to the light than the near plane of its shadow map casts no shadow.
+  const glm::vec3 from = light(i).position_ws + aside_ws;
+  const float distance = glm::distance(place_ws, from);
+  if (distance <= frame::shadow_near_m) return true;
+  return !scene_.rays.blocked(place_ws, from + (place_ws - from) * (frame::shadow_near_m / distance));
+}
+
+}  // namespace chandelier

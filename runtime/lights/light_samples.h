@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the camera sees, by a few points of it: what each light adds there, and which lights see them. From the pack
+// alone: no Vulkan.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "frame/camera.h"
+#include "lights/mean_materials.h"
+#include "pack_schema.h"
+#include "rays/pack_rays.h"
+
+namespace chandelier {
+
+/// What points are taken from; made once for a pack, which must outlive it.
+struct SampledScene {
+  explicit SampledScene(const pack::View& view) : pack(view), rays(view), materials(mean_materials(view)) {}
+
+  pack::View pack;
+  rays::PackRays rays;
+  std::vector<MeanMaterial> materials;
+};
+
+struct SampleSettings {
+  uint32_t columns = 64;  // of the grid of points over the picture
+  uint32_t rows = 36;
+  uint32_t scatter = 0;              // another number, other places in the grid's cells
+  float ambient = 0.0f;              // as RenderSettings has it
+  std::optional<float> exposure_ev;  // absent: from the points' own brightness, as shading/exposure.comp does
+};
+
+/// Numbers of lights are indices into lights(). Radiance is exposed: what the tone curve gets.
+class LightSamples {
+ public:
+  struct Point {
+    glm::vec3 position_ws;   // a little off its surface
+    glm::vec3 normal_ws;     // of the triangle, facing the eye
+    glm::vec3 unshadowable;  // radiance that no light brings: emission and ambient
+    glm::vec3 reference;     // radiance with a shadow map for each light
+  };
+  /// What a light adds to a point that it sees, wherever that is not nothing.
+  struct Reach {
+    uint32_t point;
+    glm::vec3 radiance;
+  };
+
+  /// `lights` are numbers in the pack, of the lights in view. `scene` must outlive this.
+  LightSamples(const SampledScene& scene, std::span<const uint32_t> lights, const Camera& camera, float aspect,
+               const SampleSettings& settings);
+
+  std::span<const uint32_t> lights() const { return numbers_; }
+  const pack::Light& light(uint32_t light) const { return scene_.pack.lights[numbers_[light]]; }
+  std::span<const Point> points() const { return points_; }
+  std::span<const Reach> reach(uint32_t light) const { return reach_[light]; }
+  uint32_t cell_count() const { return cell_count_; }  // points, and cells of the grid that see nothing or no light
+  float exposure_ev() const { return exposure_ev_; }
+
+  /// Whether a light sees a point, were its range endless. Asked once, remembered.
+  bool sees(uint32_t light, uint32_t point) const {
+    uint8_t& known = sees_[size_t{light} * points_.size() + point];
+    if (known == unknown) known = is_lit(light, points_[point].position_ws);
+    return known != 0;
+  }
+  /// The same for any place, and for a point or spot light that stands aside of where it is; not remembered.
+  bool is_lit(uint32_t light, const glm::vec3& place_ws, const glm::vec3& aside_ws = glm::vec3(0.0f)) const;
+  uint64_t rays_cast() const { return rays_cast_; }
+
+ private:
+  static constexpr uint8_t unknown = 2;
+
+  void place_points(const Camera& camera, float aspect, const SampleSettings& settings);
+  void light_points(const Camera& camera);
+  void expose(const std::optional<float>& exposure_ev);
+
+  const SampledScene& scene_;
+  std::vector<uint32_t> numbers_;
+  std::vector<Point> points_;
+  std::vector<uint32_t> material_;  // of each point
+  std::vector<std::vector<Reach>> reach_;
+  mutable std::vector<uint8_t> sees_;  // light after light, a byte for each point: 0, 1 or unknown
+  mutable uint64_t rays_cast_ = 0;
+  uint32_t cell_count_ = 0;
+  float exposure_ev_ = 0.0f;
+};
+
+}  // namespace chandelier
