@@ -42,14 +42,6 @@ void draw_in_turns(Renderer& renderer, uint32_t frames, Side& a, Side& b) {
   b.picture = renderer.read_back();
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder))
-    throw std::runtime_error(fmt::format("{}: cannot make the folder ({})", folder.string(),
-                                         error ? error.message() : "something else is there"));
-}
-
 Run side_run(const Options& options, const NamedCamera& camera, const gpu::Device& device, const Side& side,
              std::size_t index) {
   Run run;

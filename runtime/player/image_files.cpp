@@ -142,6 +142,14 @@ void write_png(const fs::path& path, uint32_t width, uint32_t height, std::span<
   write_file(path, bytes);
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    throw std::runtime_error(fmt::format("{}: cannot make the folder ({})", folder.string(),
+                                         error ? error.message() : "something else is there"));
+}
+
 void write_file(const fs::path& path, std::string_view bytes) {
   Draft draft;
   draft.kept = written_in_place(path);

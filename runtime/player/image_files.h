@@ -28,6 +28,8 @@ void write_png(const std::filesystem::path& path, uint32_t width, uint32_t heigh
 /// Writes beside `path` and renames over it, so that a failure leaves nothing and an older file stays; what is not a
 /// regular file (/dev/stdout) is written in place. Throws std::runtime_error, one line.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+/// Makes a folder, and those above it, unless it is there. Throws std::runtime_error.
+void make_folder(const std::filesystem::path& folder);
 /// Throws std::runtime_error where write_file() could not make `path`, before any time is spent on what goes there.
 void check_writable(const std::filesystem::path& path);
 

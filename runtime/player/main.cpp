@@ -13,6 +13,7 @@
 #include "player/headless.h"
 #include "player/image_files.h"
 #include "player/options.h"
+#include "player/path.h"
 #include "player/prediction.h"
 #include "player/truth.h"
 #ifndef CHANDELIER_PORTABLE
@@ -63,6 +64,7 @@ ValidationLog draw(const Options& options, const NamedCamera& camera, const pack
   const VisibilitySource visibility = visibility_for(options.recipes, pack);
   if (options.mode == Mode::headless) run_headless(options, camera, device, renderer, visibility);
   if (options.mode == Mode::compare) run_comparison(options, camera, device, renderer, visibility);
+  if (options.mode == Mode::path) run_path(options, device, renderer, visibility);
 #ifndef CHANDELIER_PORTABLE
   const pack::BakeInfo& info = *pack.view().bake_info;
   const float scene_size_m = glm::distance(info.bounds_min_ws, info.bounds_max_ws);

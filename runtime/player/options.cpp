@@ -130,8 +130,26 @@ void read_comparison(const Typed& typed, Options& options) {
                      make_side(typed.compare.substr(comma + 1), typed)};
 }
 
+NamedRecipe single_recipe(const Typed& typed) {
+  return make_recipe(typed.preset.empty() ? std::string(presets().front().name) : typed.preset, typed);
+}
+
+void read_path_mode(const Typed& typed, Options& options) {
+  if (typed.report.empty()) throw UsageError("--path: needs --report DIR for what it writes");
+  if (!typed.compare.empty()) throw UsageError("--path: cannot be used with --compare");
+  if (!typed.output.empty()) throw UsageError("--path: cannot be used with --output");
+  if (!typed.stats.empty()) throw UsageError("--path: cannot be used with --stats; --report DIR gets path.json");
+  if (!typed.camera.empty()) throw UsageError("--path: cannot be used with --camera; the path has the cameras");
+  if (typed.frames && *typed.frames < 2)
+    throw UsageError(fmt::format("--path: needs --frames of 2 or more ({})", *typed.frames));
+  options.mode = Mode::path;
+  options.report = typed.report;
+  options.path = typed.path;
+  options.recipes = {single_recipe(typed)};
+}
+
 void read_single(const Typed& typed, Options& options) {
-  if (!typed.report.empty()) throw UsageError("--report: needs --compare A,B");
+  if (!typed.report.empty()) throw UsageError("--report: needs --compare A,B or --path FILE");
   if (typed.predict) {
     if (!typed.output.empty()) throw UsageError("--predict: cannot be used with --output; it draws nothing");
     if (typed.frames) throw UsageError("--predict: cannot be used with --frames; it draws none");
@@ -150,7 +168,7 @@ void read_single(const Typed& typed, Options& options) {
 #endif
     options.mode = Mode::window;
   }
-  options.recipes = {make_recipe(typed.preset.empty() ? std::string(presets().front().name) : typed.preset, typed)};
+  options.recipes = {single_recipe(typed)};
 }
 
 Options checked(const Typed& typed) {
@@ -168,7 +186,9 @@ Options checked(const Typed& typed) {
   read_size(typed.size, options);
   read_exposure(typed.exposure, options);
   read_camera(typed.camera, options);
-  if (typed.compare.empty())
+  if (!typed.path.empty())
+    read_path_mode(typed, options);
+  else if (typed.compare.empty())
     read_single(typed, options);
   else
     read_comparison(typed, options);

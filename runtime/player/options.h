@@ -14,7 +14,7 @@
 
 namespace chandelier::player {
 
-enum class Mode { list_devices, headless, compare, predict, window };
+enum class Mode { list_devices, headless, compare, path, predict, window };
 
 struct NamedRecipe {
   std::string preset;
@@ -27,7 +27,8 @@ struct Options {
   std::filesystem::path pack;
   std::filesystem::path output;      // Mode::headless
   std::filesystem::path stats;       // Mode::headless, Mode::predict; empty: none
-  std::filesystem::path report;      // Mode::compare: a folder
+  std::filesystem::path report;      // Mode::compare and Mode::path: a folder
+  std::filesystem::path path;        // Mode::path: the camera's
   std::vector<NamedRecipe> recipes;  // two in Mode::compare, else one
   Budget budget;                     // chooses d_init of recipes with light clusters
   uint32_t width = 1280;

@@ -50,6 +50,7 @@ std::string footer() {
       "--stats frame.json\n"
       "  chandelier-play scene.chandelier --compare reference,lightcluster --report report\n"
       "  chandelier-play scene.chandelier --compare truth,lightcluster --report report\n"
+      "  chandelier-play scene.chandelier --path walk.json --preset lightcluster --report report\n"
       "  chandelier-play scene.chandelier --predict --preset lightcluster --max-shadow-maps 24\n"
       "\nExit status: 0 done, 1 failed (or the validation layer spoke), 2 wrong usage.";
   return text;
@@ -75,7 +76,11 @@ void declare_output(CLI::App& app, Typed& typed) {
       ->group("Output");
   app.add_flag("--predict", typed.predict, "Say what a frame will take, without drawing it or opening a device")
       ->group("Output");
-  app.add_option("--report", typed.report, "Folder for what --compare writes; made if it is missing")
+  app.add_option("--path", typed.path,
+                 "Move the camera along this path and report what changes from frame to frame [60 frames]")
+      ->type_name("FILE.json")
+      ->group("Output");
+  app.add_option("--report", typed.report, "Folder for what --compare or --path writes; made if it is missing")
       ->type_name("DIR")
       ->group("Output");
 }
