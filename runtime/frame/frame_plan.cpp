@@ -55,6 +55,7 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
   const SelectAids aids{.surroundings = surroundings,
                         .ambient = settings.ambient,
                         .exposure_ev = settings.exposure_ev,
+                        .previous_centers = settings.previous_centers,
                         .centers = settings.centers};
   FramePlan plan{.recipe = settings.recipe};
   auto start = Clock::now();
@@ -83,6 +84,7 @@ FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, 
   stats.lights = lights;
   stats.lights_in_view = plan.list.lights.size();
   stats.light_clusters = plan.list.maps.size();
+  stats.centers = centers_of_pack_lights(plan.list, lights);
   stats.reference_path = plan.recipe.select != settings.recipe.select;
   stats.shadow_maps = plan.recipe.filter == Filter::rays ? 0 : plan.list.maps.size();
   stats.shadow_views = plan.views.size() - 1;
@@ -94,8 +96,7 @@ FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, 
     stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, round.visibility_bytes);
   }
   stats.shadow_rounds = plan.rounds.size();
-  stats.centers.assign(lights, pack::none);
-  for (size_t i = 0; i < plan.list.lights.size(); ++i) stats.centers[plan.list.pack_light[i]] = plan.list.center[i];
+  stats.centers = centers_of_pack_lights(plan.list, lights);
   return stats;
 }
 

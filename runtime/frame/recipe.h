@@ -48,6 +48,7 @@ struct Recipe {
   DynamicLights dynamic_lights = DynamicLights::cluster;
   AreaRadius area_radius = AreaRadius::d_min;  // LightCluster §3.2.2
   WallTest walls = WallTest::none;
+  float stability = 0.0f;         // 0 to below 1: how much lights cling to RenderSettings::previous_centers
   float reference_share = 0.85f;  // as many clusters per light in view: the reference is drawn instead; above 1: never
   uint32_t face_size_px = 512;    // width of one face of a cube
   uint64_t shadow_budget_bytes = uint64_t{1024} << 20;  // depth kept at a time; more maps are drawn in further rounds

@@ -18,11 +18,11 @@ struct RenderSettings {
   Camera camera;
   uint32_t width = 1280;
   uint32_t height = 720;
-  float ambient = 0.0f;              // radiance from everywhere, for scenes that would be black without
-  std::optional<float> exposure_ev;  // stops; absent: from the picture's own brightness
-  std::vector<uint32_t>
-      centers;                  // for each light of the pack whose shadow map it takes; pack::none, or empty: selected
-  VisibilitySource visibility;  // needed by filter rays, unused by others
+  float ambient = 0.0f;                    // radiance from everywhere, for scenes that would be black without
+  std::optional<float> exposure_ev;        // stops; absent: from the picture's own brightness
+  std::vector<uint32_t> previous_centers;  // FrameStats::centers of the frame before, where the recipe has stability
+  std::vector<uint32_t> centers;           // whose map each light of the pack takes; pack::none, or empty: as selected
+  VisibilitySource visibility;             // needed by filter rays, unused by others
 };
 
 }  // namespace chandelier

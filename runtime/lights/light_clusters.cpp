@@ -47,10 +47,10 @@ class Selection {
 
   bool clings() const { return settings_.stability > 0.0f && !settings_.previous_centers.empty(); }
   bool was_center(uint32_t light) const { return clings() && settings_.previous_centers[light] == light; }
-  // By how much d_min counts for a light that might become a centre.
+  // How much of a centre's d_min counts for a light that it might cover.
+  double largest_d_min_factor() const { return clings() ? 1.0 + 0.25 * double{settings_.stability} : 1.0; }
   double d_min_factor(uint32_t light) const {
-    if (!clings()) return 1.0;
-    return was_center(light) ? 1.0 - double{settings_.stability} : 1.0 + double{settings_.stability};
+    return was_center(light) ? 1.0 - double{settings_.stability} : largest_d_min_factor();
   }
   bool is_blocked(uint32_t light, uint32_t center) const { return blocked_ && blocked_(light, center); }
   double distance_m(uint32_t light, uint32_t center) const {
@@ -118,8 +118,8 @@ void Selection::select_centers() {
 
 void Selection::cover(const PointTree& lights, double reach, uint32_t center) {
   const double d_min = d_min_[center];
-  const double largest = clings() ? (1.0 + double{settings_.stability}) * d_min : d_min;
-  lights.visit_near(lights_[center].position_ws, SquaredRadius(reach * largest), [&](uint32_t light) {
+  const SquaredRadius radius(reach * largest_d_min_factor() * d_min);
+  lights.visit_near(lights_[center].position_ws, radius, [&](uint32_t light) {
     const Candidate candidate{distance_m(light, center), rank_[center], center};
     const bool covers = candidate.distance_m <= d_min_factor(light) * d_min;
     if (covers && candidate.before(nearest_[light]) && !is_blocked(light, center)) nearest_[light] = candidate;
@@ -161,7 +161,7 @@ void Selection::join_nearest() {
     const uint32_t last = settings_.previous_centers[light];
     if (last >= lights_.size() || rank_[last] == none || last == nearest.center) continue;
     const double distance = distance_m(light, last);
-    if (distance <= (1.0 + double{settings_.stability}) * nearest.distance_m && !is_blocked(light, last))
+    if (distance <= d_min_factor(light) * d_min_[last] && !is_blocked(light, last))
       nearest = {distance, rank_[last], last};
   }
 }

@@ -31,8 +31,7 @@ struct ClusterSettings {
   float z_far_m = 30.0f;
   DistanceScaling scaling = DistanceScaling::grow;
   DynamicLights dynamic_lights = DynamicLights::cluster;
-  float stability =
-      0.0f;  // 0 to below 1: how much a light clings to what it was a frame ago; 0 is the paper's selection
+  float stability = 0.0f;  // 0 to below 1: how much a light clings to what it was a frame ago; 0 not at all
   std::span<const uint32_t> previous_centers;  // of each light its centre a frame ago, or no_center; or nothing at all
 };
 
@@ -61,7 +60,7 @@ bool has_own_center(const ClusterLight& light, const ClusterSettings& settings);
 /// from every centre so far that is not blocked (§3.1.2). Then every other light joins its nearest centre, ties to the
 /// one selected first (§3.1.3). Finite input; O(lights log lights) where clusters are about as large as d_min says.
 /// With stability s > 0, lights that were centres come first and stay centres beyond (1 - s) d_min, the others become
-/// centres beyond (1 + s) d_min, and a light keeps its centre unless another is nearer by a factor of more than 1 + s.
+/// centres beyond (1 + s / 4) d_min, and a light keeps its centre while that is one and within as much.
 LightClusters select_light_clusters(std::span<const ClusterLight> lights, const ClusterSettings& settings,
                                     const Blocked& blocked = {});
 

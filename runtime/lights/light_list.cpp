@@ -3,8 +3,8 @@
 #include "lights/light_list.h"
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
+#include <string>
 #include <unordered_map>
 
 #include "lights/light_clusters.h"
@@ -73,7 +73,20 @@ lights::ClusterSettings cluster_settings(const Recipe& recipe, const Camera& cam
           .d_init_m = recipe.d_init_m,
           .z_far_m = recipe.z_far_m,
           .scaling = recipe.distance_scaling,
-          .dynamic_lights = recipe.dynamic_lights};
+          .dynamic_lights = recipe.dynamic_lights,
+          .stability = recipe.stability};
+}
+
+// Numbers of the pack as places among `numbers`; a centre that is not among them is none.
+std::vector<uint32_t> as_places(std::span<const uint32_t> previous_centers, std::span<const uint32_t> numbers) {
+  std::vector<uint32_t> place(previous_centers.size(), lights::no_center);
+  for (uint32_t i = 0; i < numbers.size() && !place.empty(); ++i) place[numbers[i]] = i;
+  std::vector<uint32_t> centers;
+  for (uint32_t i = 0; i < numbers.size() && !place.empty(); ++i) {
+    const uint32_t center = previous_centers[numbers[i]];
+    centers.push_back(center < place.size() ? place[center] : lights::no_center);
+  }
+  return centers;
 }
 
 // LightCluster §3.2.2 takes d_min, which no member reaches, and shadows all those that stand nearer too softly. These
@@ -88,15 +101,18 @@ float area_radius_m(const Recipe& recipe, const lights::LightCluster& cluster) {
 
 // `numbers` are those of the clustered lights in the pack.
 std::vector<Member> members_of_light_clusters(std::span<const pack::Light> lights, std::span<const uint32_t> numbers,
-                                              const Recipe& recipe, const Camera& camera, Surroundings* surroundings) {
+                                              const Recipe& recipe, const Camera& camera, const SelectAids& aids) {
   std::vector<lights::ClusterLight> spheres;
   for (const uint32_t i : numbers) spheres.push_back(cluster_light(lights[i]));
   lights::Blocked blocked;
   if (recipe.walls != WallTest::none)
-    blocked = [&, &walls = surroundings->walls()](uint32_t a, uint32_t b) {
+    blocked = [&, &walls = aids.surroundings->walls()](uint32_t a, uint32_t b) {
       return walls.between(recipe.walls, numbers[a], numbers[b]);
     };
-  const auto result = lights::select_light_clusters(spheres, cluster_settings(recipe, camera), blocked);
+  const std::vector<uint32_t> previous = as_places(aids.previous_centers, numbers);
+  lights::ClusterSettings settings = cluster_settings(recipe, camera);
+  settings.previous_centers = previous;
+  const auto result = lights::select_light_clusters(spheres, settings, blocked);
   std::vector<Member> members;
   for (uint32_t i = 0; i < numbers.size(); ++i) {
     const lights::LightCluster& joined = result.clusters[result.cluster_of_light[i]];
@@ -125,10 +141,10 @@ std::vector<Member> members_of_directional_clusters(std::span<const pack::Light>
 }
 
 std::vector<Member> clustered(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
-                              const Recipe& recipe, const Camera& camera, Surroundings* surroundings) {
+                              const Recipe& recipe, const Camera& camera, const SelectAids& aids) {
   std::vector<uint32_t> directional, others;
   for (const uint32_t i : in_view) (is_directional(lights[i]) ? directional : others).push_back(i);
-  auto members = members_of_light_clusters(lights, others, recipe, camera, surroundings);
+  auto members = members_of_light_clusters(lights, others, recipe, camera, aids);
   const auto far = members_of_directional_clusters(lights, directional, recipe, camera);
   members.insert(members.end(), far.begin(), far.end());
   return members;
@@ -168,7 +184,7 @@ void hold_centers(std::span<const pack::Light> lights, std::span<const uint32_t>
   std::unordered_map<uint32_t, Map> maps;
   for (Member& member : members) {
     const pack::Light& light = lights[member.light];
-    const uint32_t held = member.light < centers.size() ? centers[member.light] : pack::none;
+    const uint32_t held = centers[member.light];
     if (held < lights.size() && is_directional(lights[held]) == is_directional(light)) member.center = held;
     const float apart = glm::distance(light.position_ws, lights[member.center].position_ws);
     Map& map = maps[member.center];
@@ -195,10 +211,16 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
                             (recipe.select == Select::light_clusters && recipe.walls != WallTest::none);
   if (looks_around && !aids.surroundings)
     throw std::invalid_argument("select_lights: the recipe needs to know the lights' surroundings");
+  const auto one_each = [&](std::span<const uint32_t> centers, const char* what) {
+    if (!centers.empty() && centers.size() != lights.size())
+      throw std::invalid_argument(std::string(what) + ": must be one per light of the pack (" +
+                                  std::to_string(centers.size()) + " for " + std::to_string(lights.size()) + ")");
+  };
+  one_each(aids.previous_centers, "previous centres");
+  one_each(aids.centers, "centres");
   const auto in_view = lights_in_view(lights, camera, aspect);
-  std::vector<Member> members = recipe.select == Select::per_light
-                                    ? one_map_each(lights, in_view)
-                                    : clustered(lights, in_view, recipe, camera, aids.surroundings);
+  std::vector<Member> members = recipe.select == Select::per_light ? one_map_each(lights, in_view)
+                                                                   : clustered(lights, in_view, recipe, camera, aids);
   if (recipe.select == Select::error_driven)
     members = members_by_error(lights, in_view, std::move(members), recipe,
                                {camera, aspect, aids.ambient, aids.exposure_ev}, aids.surroundings->by_error());
@@ -223,6 +245,12 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
     list.center.push_back(member.center);
   }
   return list;
+}
+
+std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count) {
+  std::vector<uint32_t> centers(light_count, pack::none);
+  for (size_t i = 0; i < list.center.size(); ++i) centers[list.pack_light[i]] = list.center[i];
+  return centers;
 }
 
 }  // namespace chandelier

@@ -28,14 +28,19 @@ struct SelectAids {
   Surroundings* surroundings = nullptr;  // of the same pack; needed for walls, and to select by error
   float ambient = 0.0f;                  // how bright the picture will be, to select by error
   std::optional<float> exposure_ev;
+  /// Each light's centre a frame ago, pack::none where it was not in view, to which the recipe's stability clings; or empty.
+  std::span<const uint32_t> previous_centers;
   /// For each light the number of the light whose map it shall take; pack::none, or a directional light for another or
   /// the other way round: as selected. May be empty.
   std::span<const uint32_t> centers;
 };
 
 /// Point and spot lights may share a map, and directional lights among themselves. Throws std::invalid_argument where
-/// the recipe needs surroundings and there are none.
+/// the recipe needs surroundings and there are none, or centres are not one per light.
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
                         const SelectAids& aids = {});
+
+/// Of `light_count` lights of the pack the one whose map each takes, pack::none where it is not in view.
+std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count);
 
 }  // namespace chandelier

@@ -75,6 +75,7 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
     if (!typed.answers[i].empty()) set_answer(recipe, i, typed.answers[i]);
   if (typed.d_init) recipe.d_init_m = *typed.d_init;
   if (typed.z_far) recipe.z_far_m = *typed.z_far;
+  if (typed.stability) recipe.stability = *typed.stability;
   if (typed.reference_share) recipe.reference_share = *typed.reference_share;
   if (typed.face_size) recipe.face_size_px = *typed.face_size;
   if (typed.shadow_budget) recipe.shadow_budget_bytes = uint64_t{*typed.shadow_budget} << 20;

@@ -59,6 +59,7 @@ Json recipe_json(const Recipe& recipe) {
                       {"distance_scaling", distance_scaling_names()[static_cast<std::size_t>(recipe.distance_scaling)]},
                       {"dynamic_lights", dynamic_lights_names()[static_cast<std::size_t>(recipe.dynamic_lights)]},
                       {"area_radius", area_radius_names()[static_cast<std::size_t>(recipe.area_radius)]},
+                      {"stability", recipe.stability},
                       {"walls", wall_test_names()[static_cast<std::size_t>(recipe.walls)]},
                       {"reference_share", recipe.reference_share},
                       {"face_size_px", recipe.face_size_px},

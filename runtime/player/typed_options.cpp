@@ -150,6 +150,12 @@ void declare_recipe(CLI::App& app, Typed& typed) {
       ->group(group);
   declare_named(app, "--distance-scaling", "Light clusters: how d_min follows distance", distance_scaling_names(),
                 static_cast<std::size_t>(defaults.distance_scaling), typed.distance_scaling);
+  app.add_option(
+         "--stability", typed.stability,
+         fmt::format("Light clusters: how much lights cling to what they were a frame ago [{}]", defaults.stability))
+      ->type_name("S")
+      ->check(number_between(0.0, 0.999))
+      ->group(group);
   declare_named(app, "--dynamic-lights", "Light clusters: whether lights that move share maps or have their own",
                 dynamic_lights_names(), static_cast<std::size_t>(defaults.dynamic_lights), typed.dynamic_lights);
   declare_named(app, "--area-radius", "Light clusters: radius of the area light that stands for one",

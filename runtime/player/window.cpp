@@ -145,6 +145,7 @@ void Window::run(const Options& options, const NamedCamera& camera, float scene_
     settings.width = size.width;
     settings.height = size.height;
     const FrameStats stats = renderer.draw(settings);
+    settings.previous_centers = stats.centers;
     if (swapchain.show(renderer.shown_image(), size, framebuffer_size(window))) ++frames;
     glfwSetWindowTitle(
         window, fmt::format("{}: {}, {:.1f} ms, {} lights, {} shadow maps", scene, options.recipes.front().preset,

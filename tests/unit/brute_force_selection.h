@@ -34,11 +34,14 @@ struct BruteForceSelection {
     return order;
   }
 
-  bool near_a_center(uint32_t light) const {
+  bool covers(size_t c, uint32_t light) const {
     const double stability = clings() ? double{settings.stability} : 0.0;
-    const double factor = was_center(light) ? 1.0 - stability : 1.0 + stability;
+    const double factor = was_center(light) ? 1.0 - stability : 1.0 + 0.25 * stability;
+    return distance(light, centers[c]) <= factor * d_min_m[c] && !apart(light, centers[c]);
+  }
+  bool near_a_center(uint32_t light) const {
     for (size_t c = 0; c < centers.size(); ++c)
-      if (distance(light, centers[c]) <= factor * d_min_m[c] && !apart(light, centers[c])) return true;
+      if (covers(c, light)) return true;
     return false;
   }
 
@@ -54,9 +57,9 @@ struct BruteForceSelection {
       least = m;
     }
     if (!clings()) return nearest;
-    const uint32_t last = settings.previous_centers[light];
-    if (std::find(centers.begin(), centers.end(), last) == centers.end() || apart(light, last)) return nearest;
-    return distance(light, last) <= (1.0 + double{settings.stability}) * least ? last : nearest;
+    for (size_t c = 0; c < centers.size(); ++c)
+      if (centers[c] == settings.previous_centers[light] && covers(c, light)) return centers[c];
+    return nearest;
   }
 
   LightClusters clusters() {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 namespace chandelier {
 namespace {
@@ -79,6 +80,22 @@ TEST(LightListTest, DynamicAndUnclusteredLightsKeepMapsOfTheirOwn) {
   lights[2].unclustered = 1;
   recipe.dynamic_lights = DynamicLights::cluster;
   EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f).center, (std::vector<uint32_t>{0, 0, 2}));
+}
+
+// The first of two equals is the centre, unless the other was; numbers are those of the pack, not of what is in view.
+TEST(LightListTest, StabilityClingsToThePreviousFramesCenters) {
+  const pack::Light lights[]{light_at({0, 0, 90}, 1), light_at({0, 0, -4}, 2), light_at({0, 0, -4.2f}, 2)};
+  Recipe recipe = clustering(0.5f);
+  recipe.stability = 0.3f;
+  LightList list = select_lights(lights, recipe, {}, 1.0f);
+  EXPECT_EQ(centers_of_pack_lights(list, 3), (std::vector<uint32_t>{pack::none, 1, 1}));
+  const std::vector<uint32_t> previous{pack::none, 2, 2}, wrong(2);
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, nullptr, previous).center, (std::vector<uint32_t>{2, 2}));
+  const std::vector<uint32_t> of_one_out_of_view{0, 0, 0};
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, nullptr, of_one_out_of_view).center, (std::vector<uint32_t>{1, 1}));
+  recipe.stability = 0.0f;
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, nullptr, previous).center, (std::vector<uint32_t>{1, 1}));
+  EXPECT_THROW(select_lights(lights, recipe, {}, 1.0f, nullptr, wrong), std::invalid_argument);
 }
 
 TEST(LightListTest, AreaRadiusIsDMinOrTheMembersSpread) {

@@ -213,6 +213,8 @@ TEST(RecipeTest, RefusalsNameTheSetting) {
   EXPECT_TRUE(has(reason([&](Recipe& r) { r.d_init_m = nan; }), "d-init"));
   EXPECT_TRUE(has(reason([](Recipe& r) { r.z_far_m = 0.0f; }), "z-far"));
   EXPECT_TRUE(has(reason([&](Recipe& r) { r.z_far_m = nan; }), "z-far"));
+  EXPECT_TRUE(has(reason([](Recipe& r) { r.stability = 1.0f; }), "stability"));
+  EXPECT_TRUE(has(reason([&](Recipe& r) { r.stability = nan; }), "stability"));
   EXPECT_TRUE(has(reason([](Recipe& r) { r.face_size_px = 15; }), "face-size"));
   EXPECT_TRUE(has(reason([](Recipe& r) { r.face_size_px = 16385; }), "face-size"));
   const std::string hard = reason([](Recipe& r) { r.select = Select::light_clusters; });

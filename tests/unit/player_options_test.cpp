@@ -70,7 +70,7 @@ TEST(PlayerOptions, ExplicitSettingsOverrideThePreset) {
   const Options options = accepted(
       "scene.chandelier --output a.png --preset lightcluster --filter pcf --cull none --d-init 0.25 --z-far 12 "
       "--distance-scaling "
-      "paper-formula --face-size 128 --shadow-budget 64 --ambient 0.5 --exposure -1.5 --frames 7 --size 64x32");
+      "paper-formula --dynamic-lights own --area-radius spread --stability 0.25 --face-size 128 --shadow-budget 64 --ambient 0.5 --exposure -1.5 --frames 7 --size 64x32");
   const Recipe& recipe = options.recipes.at(0).recipe;
   EXPECT_EQ(stage_answer(recipe, "select"), "light-clusters");
   EXPECT_EQ(stage_answer(recipe, "filter"), "pcf");
@@ -78,6 +78,9 @@ TEST(PlayerOptions, ExplicitSettingsOverrideThePreset) {
   EXPECT_FLOAT_EQ(recipe.d_init_m, 0.25f);
   EXPECT_FLOAT_EQ(recipe.z_far_m, 12.0f);
   EXPECT_EQ(recipe.distance_scaling, DistanceScaling::paper_formula);
+  EXPECT_EQ(recipe.dynamic_lights, DynamicLights::own);
+  EXPECT_EQ(recipe.area_radius, AreaRadius::spread);
+  EXPECT_FLOAT_EQ(recipe.stability, 0.25f);
   EXPECT_EQ(recipe.face_size_px, 128u);
   EXPECT_EQ(recipe.shadow_budget_bytes, uint64_t{64} << 20);
   EXPECT_FLOAT_EQ(options.ambient, 0.5f);
