@@ -2,8 +2,8 @@
 // How long the selection of light clusters takes over the number of lights (LightCluster, Figure 4).
 #include <benchmark/benchmark.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <random>
 #include <vector>
@@ -30,9 +30,9 @@ std::vector<ClusterLight> random_lights(int64_t count) {
   return lights;
 }
 
-using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+// The process's own time: what others run beside it does not count.
+double cpu_ms() {
+  return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 void select_light_clusters(benchmark::State& state) {
@@ -43,18 +43,18 @@ void select_light_clusters(benchmark::State& state) {
   size_t clusters = 0;
   double least_ms = std::numeric_limits<double>::infinity();
   for (auto iteration : state) {
-    const auto start = Clock::now();
+    const double start_ms = cpu_ms();
     clusters = chandelier::lights::select_light_clusters(lights, settings).clusters.size();
-    least_ms = std::min(least_ms, ms_since(start));
+    least_ms = std::min(least_ms, cpu_ms() - start_ms);
     benchmark::DoNotOptimize(clusters);
   }
   state.counters["light_clusters"] = double(clusters);
-  state.counters["least_ms"] = least_ms;
+  state.counters["least_cpu_ms"] = least_ms;
   state.SetComplexityN(state.range(0));
   if (lights.size() > 8192) return;  // brute force takes minutes
-  const auto start = Clock::now();
+  const double start_ms = cpu_ms();
   benchmark::DoNotOptimize(chandelier::lights::brute_force_clusters(lights, settings).clusters.size());
-  state.counters["brute_force_over_this"] = ms_since(start) / least_ms;
+  state.counters["brute_force_over_this"] = (cpu_ms() - start_ms) / least_ms;
 }
 
 BENCHMARK(select_light_clusters)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole frames with different recipes: which must give the same picture, and what a frame must bear.
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <random>
 
@@ -124,6 +125,26 @@ TEST_F(RecipesTest, LightClustersShareMaps) {
   EXPECT_LT(clustered.stats.shadow_maps, reference.stats.shadow_maps / 2);
   EXPECT_LT(clustered.stats.shadow_triangles, reference.stats.shadow_triangles);
   EXPECT_NEAR(brightness(clustered.picture) / brightness(reference.picture), 1.0, 0.2);  // no light is lost or doubled
+}
+
+// Each light keeps its direction and colour and takes its shadows from the brightest of its cluster.
+TEST_F(RecipesTest, DirectionalLightsShareCascades) {
+  Scene scene = small_room(0);
+  scene.lights.push_back(directional_light({0.31f, -1, -0.4f}, 2.0f));
+  scene.lights.push_back(directional_light({-1, -1, 0.2f}, 0.5f));
+  scene.lights[0].color = {1, 0.2f, 0.2f};
+  Renderer renderer(device(), scene.open());
+  const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, Filter::pcf, 0)));
+  const Frame clustered = frame(renderer, room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.5f)));
+  EXPECT_EQ(reference.stats.centers, (std::vector<uint32_t>{0, 1, 2}));
+  EXPECT_EQ(clustered.stats.centers, (std::vector<uint32_t>{1, 1, 2}));
+  EXPECT_EQ(clustered.stats.shadow_maps, 2u);
+  double difference = 0.0;
+  for (size_t i = 0; i < reference.picture.radiance.size(); ++i)
+    difference += std::abs(reference.picture.radiance[i] - clustered.picture.radiance[i]);
+  difference /= static_cast<double>(reference.picture.radiance.size() / 4);
+  EXPECT_GT(difference, 0.0);
+  EXPECT_LT(difference, 0.01 * brightness(reference.picture));
 }
 
 TEST_F(RecipesTest, MapsThatTakeTurnsInTheStoreGiveTheSamePicture) {
