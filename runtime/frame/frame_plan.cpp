@@ -96,7 +96,6 @@ FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, 
     stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, round.visibility_bytes);
   }
   stats.shadow_rounds = plan.rounds.size();
-  stats.centers = centers_of_pack_lights(plan.list, lights);
   return stats;
 }
 

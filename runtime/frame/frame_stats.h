@@ -23,7 +23,6 @@ struct FrameStats {
   uint64_t lights_in_view = 0;
   uint64_t light_clusters = 0;    // equals lights_in_view where lights are not clustered
   uint64_t reference_path = 0;    // 1: clusters were asked for, but are nearly as many as lights (LightCluster §5.4)
-  std::vector<uint32_t> centers;  // of each light of the pack the one whose map it took; pack::none: not in view
   uint64_t shadow_maps = 0;
   uint64_t shadow_views = 0;
   uint64_t shadow_triangles = 0;

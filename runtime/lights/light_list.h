@@ -28,7 +28,8 @@ struct SelectAids {
   Surroundings* surroundings = nullptr;  // of the same pack; needed for walls, and to select by error
   float ambient = 0.0f;                  // how bright the picture will be, to select by error
   std::optional<float> exposure_ev;
-  /// Each light's centre a frame ago, pack::none where it was not in view, to which the recipe's stability clings; or empty.
+  /// Each light's centre a frame ago, pack::none where it was not in view, to which the recipe's stability clings; or
+  /// empty.
   std::span<const uint32_t> previous_centers;
   /// For each light the number of the light whose map it shall take; pack::none, or a directional light for another or
   /// the other way round: as selected. May be empty.

@@ -133,6 +133,7 @@ void run_path(const Options& options, const gpu::Device& device, Renderer& rende
     run.camera = {"", camera};
     run.settings = render_settings(options, options.recipes.front().recipe, camera, visibility);
     run.settings.exposure_ev = exposure_ev;
+    run.settings.previous_centers = before;
     run.stats = renderer.draw(run.settings);
     if (!exposure_ev) exposure_ev = run.stats.exposure_ev;  // or brightness would follow the view
     const CenterChanges changes = center_changes(before, run.stats.centers);

@@ -133,7 +133,8 @@ TEST_F(RecipesTest, DirectionalLightsShareCascades) {
   scene.lights.push_back(directional_light({0.31f, -1, -0.4f}, 2.0f));
   scene.lights.push_back(directional_light({-1, -1, 0.2f}, 0.5f));
   scene.lights[0].color = {1, 0.2f, 0.2f};
-  Renderer renderer(device(), scene.open());
+  const pack::File pack = scene.open();
+  Renderer renderer(device(), pack);
   const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, Filter::pcf, 0)));
   const Frame clustered = frame(renderer, room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.5f)));
   EXPECT_EQ(reference.stats.centers, (std::vector<uint32_t>{0, 1, 2}));

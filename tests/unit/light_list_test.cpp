@@ -90,12 +90,30 @@ TEST(LightListTest, StabilityClingsToThePreviousFramesCenters) {
   LightList list = select_lights(lights, recipe, {}, 1.0f);
   EXPECT_EQ(centers_of_pack_lights(list, 3), (std::vector<uint32_t>{pack::none, 1, 1}));
   const std::vector<uint32_t> previous{pack::none, 2, 2}, wrong(2);
-  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, nullptr, previous).center, (std::vector<uint32_t>{2, 2}));
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, {.previous_centers = previous}).center,
+            (std::vector<uint32_t>{2, 2}));
   const std::vector<uint32_t> of_one_out_of_view{0, 0, 0};
-  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, nullptr, of_one_out_of_view).center, (std::vector<uint32_t>{1, 1}));
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, {.previous_centers = of_one_out_of_view}).center,
+            (std::vector<uint32_t>{1, 1}));
   recipe.stability = 0.0f;
-  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, nullptr, previous).center, (std::vector<uint32_t>{1, 1}));
-  EXPECT_THROW(select_lights(lights, recipe, {}, 1.0f, nullptr, wrong), std::invalid_argument);
+  EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, {.previous_centers = previous}).center,
+            (std::vector<uint32_t>{1, 1}));
+  EXPECT_THROW(select_lights(lights, recipe, {}, 1.0f, {.previous_centers = wrong}), std::invalid_argument);
+}
+
+// Centres that are given hold whatever would be selected; C_att follows.
+TEST(LightListTest, LightsTakeTheMapsTheyAreTold) {
+  std::vector<pack::Light> lights(4, pack::Light{.range_m = 5.0f});
+  for (uint32_t i = 0; i < 3; ++i) lights[i].position_ws = {static_cast<float>(i), 0, -4};
+  lights[3].type = pack::LightType::directional;
+  lights[3].direction_ws = {0, -1, 0};
+  const std::vector<uint32_t> centers{2, pack::none, 2, 0};
+  const LightList list = select_lights(lights, clustering(0.1f), {}, 1.0f, {.centers = centers});
+  EXPECT_EQ(centers_of_pack_lights(list, 4), (std::vector<uint32_t>{2, 1, 2, 3}));
+  ASSERT_EQ(list.maps.size(), 3u);
+  EXPECT_FLOAT_EQ(list.maps[1].range_m, 7.0f);
+  const std::vector<uint32_t> too_few{0};
+  EXPECT_THROW(select_lights(lights, clustering(0.1f), {}, 1.0f, {.centers = too_few}), std::invalid_argument);
 }
 
 TEST(LightListTest, AreaRadiusIsDMinOrTheMembersSpread) {
