@@ -8,8 +8,9 @@ namespace chandelier {
 namespace {
 
 constexpr float lights_times_points = 3e5f;
-constexpr float fewest_rows = 36.0f, most_rows = 72.0f;
-constexpr uint32_t judges_scatter = 1;
+constexpr float fewest_rows = 36.0f, most_rows = 108.0f;
+constexpr uint32_t scatter_of_search = 1;
+constexpr double in_hand = 0.85;  // of the target: estimates of soft shadows may be too high (ERROR_SELECTION.md)
 
 }  // namespace
 
@@ -22,28 +23,34 @@ SampleSettings sample_grid(size_t lights, const SampledView& view) {
           .exposure_ev = view.exposure_ev};
 }
 
-void ErrorDriven::look(std::span<const uint32_t> in_view, const SampledView& view,
-                       lights::DynamicLights dynamic_lights) {
-  if (ladder_ && view == view_ && dynamic_lights == dynamic_lights_ &&
-      std::equal(in_view.begin(), in_view.end(), in_view_.begin(), in_view_.end()))
-    return;
+void ErrorDriven::look(std::span<const uint32_t> in_view, const SampledView& view) {
+  if (judge_ && view == view_ && std::equal(in_view.begin(), in_view.end(), in_view_.begin(), in_view_.end())) return;
   ladder_.reset();
   view_ = view;
-  dynamic_lights_ = dynamic_lights;
   in_view_.assign(in_view.begin(), in_view.end());
-  SampleSettings settings = sample_grid(in_view.size(), view);
-  samples_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
-  settings.scatter = judges_scatter;
-  judge_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
-  ladder_.emplace(*samples_, dynamic_lights);
+  judge_.emplace(scene_, in_view_, view.camera, view.aspect, sample_grid(in_view.size(), view));
 }
 
 std::vector<MapMember> ErrorDriven::select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
                                            const SampledView& view, const Recipe& recipe) {
-  look(in_view, view, recipe.dynamic_lights);
+  look(in_view, view);
+  if (!ladder_ || dynamic_lights_ != recipe.dynamic_lights) {
+    ladder_.reset();
+    dynamic_lights_ = recipe.dynamic_lights;
+    SampleSettings settings = sample_grid(in_view.size(), view);
+    settings.scatter = scatter_of_search;
+    samples_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
+    ladder_.emplace(*samples_, recipe.dynamic_lights);
+  }
   const Filter soft = recipe.filter == Filter::hard ? Filter::pcss : recipe.filter;
   const double target = estimated_rmse(*judge_, clusters, {soft, recipe.face_size_px});
-  return ladder_->within(target, *judge_, {recipe.filter, recipe.face_size_px});
+  return ladder_->within(in_hand * target, *judge_, {recipe.filter, recipe.face_size_px});
+}
+
+double ErrorDriven::expected_rmse(std::span<const uint32_t> in_view, std::span<const MapMember> members,
+                                  const SampledView& view, const Recipe& recipe) {
+  look(in_view, view);
+  return estimated_rmse(*judge_, members, {recipe.filter, recipe.face_size_px});
 }
 
 }  // namespace chandelier

@@ -29,24 +29,27 @@ SampleSettings sample_grid(size_t lights, const SampledView& view);
 
 class ErrorDriven {
  public:
-  /// What `pack` points to must outlive this.
-  explicit ErrorDriven(const pack::View& pack) : scene_(pack) {}
+  /// What `pack` points to, and `rays` through it, must outlive this.
+  ErrorDriven(const pack::View& pack, const rays::PackRays& rays) : scene_(pack, rays) {}
 
-  /// The fewest shadow maps whose expected error, read by `recipe.filter`, is at most that of `clusters`. Those need a
-  /// soft filter: theirs is PCSS where the recipe says hard. All numbers of lights in `clusters` and in the answer are
-  /// indices into `in_view`, numbers in the pack in ascending order.
+  /// The fewest shadow maps whose expected error, read by `recipe.filter`, is surely no more than that of `clusters`.
+  /// Those need a soft filter: theirs is PCSS where the recipe says hard. All numbers of lights in `clusters` and in
+  /// the answer are indices into `in_view`, numbers in the pack in ascending order.
   std::vector<MapMember> select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
                                 const SampledView& view, const Recipe& recipe);
+  /// estimated_rmse() of `members`, read by `recipe.filter`; numbers as above.
+  double expected_rmse(std::span<const uint32_t> in_view, std::span<const MapMember> members, const SampledView& view,
+                       const Recipe& recipe);
 
  private:
-  void look(std::span<const uint32_t> in_view, const SampledView& view, lights::DynamicLights dynamic_lights);
+  void look(std::span<const uint32_t> in_view, const SampledView& view);
 
   SampledScene scene_;
   std::vector<uint32_t> in_view_;
   SampledView view_;
-  lights::DynamicLights dynamic_lights_ = lights::DynamicLights::cluster;
-  std::optional<LightSamples> samples_;  // the search's
-  std::optional<LightSamples> judge_;    // other points, for the estimates
+  lights::DynamicLights dynamic_lights_ = lights::DynamicLights::cluster;  // the ladder's
+  std::optional<LightSamples> judge_;                                      // for estimates
+  std::optional<LightSamples> samples_;                                    // other points, for the search
   std::optional<ErrorLadder> ladder_;
 };
 

@@ -23,60 +23,81 @@ constexpr std::array<glm::vec2, frame::poisson_taps> poisson_disc{{{0.000f, 0.00
                                                                    {0.301f, -0.520f},
                                                                    {-0.165f, 0.666f}}};
 constexpr float smoothing_texels = 1.5f;
-constexpr float penumbra_per_d_min = 0.08f;
+constexpr float penumbra_per_radius = 0.27f;
 constexpr float raise_texels = 0.75f;  // more than the reference is raised: the rays need none for their own sake
-
-// Two discs in the receiver's plane, one around it and one around the light. Rays join their taps.
-struct Discs {
-  glm::vec3 receiver_ws;
-  glm::vec3 u_ws, v_ws;  // unit length
-  float receiver_m;
-  float light_m;
-};
 
 float largest(const glm::vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// A blocker at the part t of the way shows the light's disc, of radius R, as R * (1 - t) / t around the receiver: what
-// PCSS works out (pcss.glsl:cube_pcss) these rays do by themselves. Smoothing adds to that, where the shader takes the
-// larger of both.
-Discs discs_at(const LightSamples::Point& point, const glm::vec3& center_ws, float radius_m,
-               const ShadowReading& reading, float angle) {
-  const glm::vec3 n = point.normal_ws;
-  const glm::vec3 d = point.position_ws - center_ws;
+// A receiver's plane and a light (receiver_disc.glsl:CubeDisc).
+struct Receiver {
+  glm::vec3 center_ws;  // the light
+  glm::vec3 place_ws;   // off its surface
+  glm::vec3 u_ws, v_ws;
+  float distance_m;
+  float texel_m;
+};
+
+Receiver receiver_at(const LightSamples& samples, uint32_t center, uint32_t point, uint32_t face_size_px) {
+  const glm::vec3 n = samples.points()[point].normal_ws;
+  const glm::vec3 center_ws = samples.light(center).position_ws;
+  const glm::vec3 d = samples.points()[point].position_ws - center_ws;
   const float distance = std::max(glm::length(d), 1e-6f);
-  const float texel_m = 2.0f / static_cast<float>(reading.face_size_px) * largest(d);
+  const float texel_m = 2.0f / static_cast<float>(face_size_px) * largest(d);
   const float along = glm::dot(n, d) / distance;
   const glm::vec3 t = glm::normalize(glm::cross(n, std::abs(n.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
   const glm::vec3 b = glm::cross(n, t);
-  const bool pcss = reading.filter == Filter::pcss;
-  const float wide = pcss ? 0.0f : std::min(penumbra_per_d_min * radius_m, 0.5f * distance);
-  return {
-      .receiver_ws = point.position_ws + n * (raise_texels * texel_m * std::sqrt(std::max(0.0f, 1.0f - along * along))),
-      .u_ws = std::cos(angle) * t + std::sin(angle) * b,
-      .v_ws = std::cos(angle) * b - std::sin(angle) * t,
-      .receiver_m = std::max(smoothing_texels * texel_m, wide),
-      .light_m = pcss ? std::min(frame::disc_radius_per_d_min * radius_m, 0.5f * distance) : 0.0f};
+  const float angle = static_cast<float>(point % 64u) * (std::numbers::pi_v<float> / 32.0f);
+  return {.center_ws = center_ws,
+          .place_ws = center_ws + d + n * (raise_texels * texel_m * std::sqrt(std::max(0.0f, 1.0f - along * along))),
+          .u_ws = std::cos(angle) * t + std::sin(angle) * b,
+          .v_ws = std::cos(angle) * b - std::sin(angle) * t,
+          .distance_m = distance,
+          .texel_m = texel_m};
+}
+
+// What is farther away than the receiver cannot shadow it (receiver_disc.glsl:Tap).
+glm::vec3 tap_place(const Receiver& receiver, const glm::vec2& at_m) {
+  const glm::vec3 d = receiver.place_ws + at_m.x * receiver.u_ws + at_m.y * receiver.v_ws - receiver.center_ws;
+  return receiver.center_ws + d * std::min(1.0f, receiver.distance_m / glm::length(d));
+}
+
+// pcf.glsl:cube_pcf
+float pcf(const LightSamples& samples, uint32_t center, const Receiver& receiver, float radius_m) {
+  uint32_t lit = 0;
+  for (const glm::vec2& tap : poisson_disc) lit += samples.is_lit(center, tap_place(receiver, radius_m * tap)) ? 1 : 0;
+  return static_cast<float>(lit) / frame::poisson_taps;
+}
+
+// pcss.glsl:cube_pcss
+float pcss(const LightSamples& samples, uint32_t center, const Receiver& receiver, float light_m) {
+  const float smoothing_m = smoothing_texels * receiver.texel_m;
+  const float search_m = std::max(smoothing_m, std::min(light_m, 0.5f * receiver.distance_m));
+  uint32_t count = 0;
+  float sum = 0.0f;
+  for (const glm::vec2& tap : poisson_disc) {
+    const float at = samples.blocked_at(center, tap_place(receiver, search_m * tap));
+    if (at == 1.0f) continue;
+    ++count;
+    sum += at;
+  }
+  if (count == 0 || count == frame::poisson_taps) return count == 0 ? 1.0f : 0.0f;
+  const float mean = sum / static_cast<float>(count);
+  return pcf(samples, center, receiver, glm::clamp(light_m * (1.0f - mean) / mean, smoothing_m, search_m));
 }
 
 // How much of a map's light the point sees, as the filter will say. Cascades are so fine that their filter is left out.
 float visibility(const LightSamples& samples, const MapMember& map, uint32_t point, const ShadowReading& reading) {
-  const pack::Light& light = samples.light(map.center);
-  if (reading.filter == Filter::hard || light.type == pack::LightType::directional)
-    return samples.sees(map.center, point) ? 1.0f : 0.0f;
-  const float angle = static_cast<float>(point % 64u) * (std::numbers::pi_v<float> / 32.0f);
-  const Discs discs = discs_at(samples.points()[point], light.position_ws, map.filter_radius_m, reading, angle);
-  const float farthest = glm::distance(samples.points()[point].position_ws, light.position_ws);
-  uint32_t lit = 0;
-  for (const glm::vec2& tap : poisson_disc) {
-    const glm::vec3 side = tap.x * discs.u_ws + tap.y * discs.v_ws;
-    // What is farther away than the receiver cannot shadow it (receiver_disc.glsl:Tap).
-    const glm::vec3 d = discs.receiver_ws + discs.receiver_m * side - light.position_ws;
-    const glm::vec3 place = light.position_ws + d * std::min(1.0f, farthest / glm::length(d));
-    lit += samples.is_lit(map.center, place, -discs.light_m * side) ? 1 : 0;
-  }
-  return static_cast<float>(lit) / static_cast<float>(poisson_disc.size());
+  const bool directional = samples.light(map.center).type == pack::LightType::directional;
+  const bool exact = reading.filter == Filter::hard || reading.filter == Filter::rays;
+  if (exact || directional) return samples.sees(map.center, point) ? 1.0f : 0.0f;
+  const Receiver receiver = receiver_at(samples, map.center, point, reading.face_size_px);
+  const float smoothing_m = smoothing_texels * receiver.texel_m;
+  if (reading.filter == Filter::pcss && map.filter_radius_m > 0.0f)
+    return pcss(samples, map.center, receiver, map.filter_radius_m);
+  const float wide_m = std::min(penumbra_per_radius * map.filter_radius_m, 0.5f * receiver.distance_m);
+  return pcf(samples, map.center, receiver, std::max(smoothing_m, wide_m));
 }
 
 }  // namespace

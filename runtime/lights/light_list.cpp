@@ -46,6 +46,10 @@ struct Member {
   float filter_radius_m;
 };
 
+uint32_t index_in(std::span<const uint32_t> ascending, uint32_t number) {
+  return static_cast<uint32_t>(std::lower_bound(ascending.begin(), ascending.end(), number) - ascending.begin());
+}
+
 bool by_center(const Member& a, const Member& b) {
   return a.center != b.center ? a.center < b.center : a.light < b.light;
 }
@@ -154,12 +158,10 @@ std::vector<Member> clustered(std::span<const pack::Light> lights, std::span<con
 std::vector<Member> members_by_error(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
                                      std::vector<Member> clusters, const Recipe& recipe, const SampledView& view,
                                      ErrorDriven& by_error) {
-  const auto index = [&](uint32_t light) {
-    return static_cast<uint32_t>(std::lower_bound(in_view.begin(), in_view.end(), light) - in_view.begin());
-  };
   std::sort(clusters.begin(), clusters.end(), by_center);
   std::vector<MapMember> of_clusters;
-  for (const Member& m : clusters) of_clusters.push_back({index(m.light), index(m.center), m.filter_radius_m});
+  for (const Member& m : clusters)
+    of_clusters.push_back({index_in(in_view, m.light), index_in(in_view, m.center), m.filter_radius_m});
 
   const std::vector<MapMember> chosen = by_error.select(in_view, of_clusters, view, recipe);
   std::vector<float> range_m(in_view.size(), 0.0f);  // LightCluster §3.1.3: C_att
@@ -207,8 +209,8 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
 
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
                         const SelectAids& aids) {
-  const bool looks_around = recipe.select == Select::error_driven ||
-                            (recipe.select == Select::light_clusters && recipe.walls != WallTest::none);
+  const bool looks_around =
+      recipe.select == Select::error_driven || (recipe.select != Select::per_light && recipe.walls != WallTest::none);
   if (looks_around && !aids.surroundings)
     throw std::invalid_argument("select_lights: the recipe needs to know the lights' surroundings");
   const auto one_each = [&](std::span<const uint32_t> centers, const char* what) {
@@ -251,6 +253,19 @@ std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light
   std::vector<uint32_t> centers(light_count, pack::none);
   for (size_t i = 0; i < list.center.size(); ++i) centers[list.pack_light[i]] = list.center[i];
   return centers;
+}
+
+double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& camera, float aspect,
+                     const SelectAids& aids) {
+  if (!aids.surroundings) throw std::invalid_argument("expected_rmse: needs to know the lights' surroundings");
+  std::vector<uint32_t> in_view = list.pack_light;
+  std::sort(in_view.begin(), in_view.end());
+  std::vector<MapMember> members;
+  for (size_t i = 0; i < list.lights.size(); ++i)
+    members.push_back({index_in(in_view, list.pack_light[i]), index_in(in_view, list.center[i]),
+                       list.maps[list.lights[i].map].filter_radius_m});
+  return aids.surroundings->by_error().expected_rmse(in_view, members, {camera, aspect, aids.ambient, aids.exposure_ev},
+                                                     recipe);
 }
 
 }  // namespace chandelier

@@ -41,6 +41,11 @@ struct SelectAids {
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
                         const SelectAids& aids = {});
 
+/// Expected RMSE of the shown picture against one hard shadow map for each light, of what select_lights() made of the
+/// same recipe, camera and aids: estimated_rmse().
+double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& camera, float aspect,
+                     const SelectAids& aids);
+
 /// Of `light_count` lights of the pack the one whose map each takes, pack::none where it is not in view.
 std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count);
 

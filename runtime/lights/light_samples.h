@@ -16,12 +16,13 @@
 
 namespace chandelier {
 
-/// What points are taken from; made once for a pack, which must outlive it.
+/// What points are taken from; made once for a pack. What it refers to must outlive it.
 struct SampledScene {
-  explicit SampledScene(const pack::View& view) : pack(view), rays(view), materials(mean_materials(view)) {}
+  SampledScene(const pack::View& view, const rays::PackRays& through)
+      : pack(view), rays(through), materials(mean_materials(view)) {}
 
   pack::View pack;
-  rays::PackRays rays;
+  const rays::PackRays& rays;
   std::vector<MeanMaterial> materials;
 };
 
@@ -65,8 +66,11 @@ class LightSamples {
     if (known == unknown) known = is_lit(light, points_[point].position_ws);
     return known != 0;
   }
-  /// The same for any place, and for a point or spot light that stands aside of where it is; not remembered.
-  bool is_lit(uint32_t light, const glm::vec3& place_ws, const glm::vec3& aside_ws = glm::vec3(0.0f)) const;
+  /// The same for any place; not remembered.
+  bool is_lit(uint32_t light, const glm::vec3& place_ws) const;
+  /// Where what stands nearest to a point or spot light blocks its way to a place, 0 (the light) to 1; 1 where nothing
+  /// does.
+  float blocked_at(uint32_t light, const glm::vec3& place_ws) const;
   uint64_t rays_cast() const { return rays_cast_; }
 
  private:

@@ -3,14 +3,18 @@
 
 namespace chandelier {
 
-lights::Walls& Surroundings::walls() {
+const rays::PackRays& Surroundings::rays() {
   if (!rays_) rays_.emplace(pack_);
-  if (!walls_) walls_.emplace(pack_, *rays_);
+  return *rays_;
+}
+
+lights::Walls& Surroundings::walls() {
+  if (!walls_) walls_.emplace(pack_, rays());
   return *walls_;
 }
 
 ErrorDriven& Surroundings::by_error() {
-  if (!by_error_) by_error_.emplace(pack_);
+  if (!by_error_) by_error_.emplace(pack_, rays());
   return *by_error_;
 }
 

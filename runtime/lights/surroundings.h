@@ -20,6 +20,8 @@ class Surroundings {
   ErrorDriven& by_error();
 
  private:
+  const rays::PackRays& rays();
+
   pack::View pack_;
   std::optional<rays::PackRays> rays_;
   std::optional<lights::Walls> walls_;

@@ -121,6 +121,15 @@ class Examples(SceneTest):
         self.assertGreater(rmse_shown["none"], 0.15, "half the rooms are dark")
         self.assertLess(rmse_shown["rays"], rmse_shown["none"] / 4)
 
+    def test_selection_by_error_looks_no_worse_with_six_tenths_of_the_maps(self):
+        pack = bake_example("cornell", self.folder)
+        for d_init in (0.4, 0.5, 0.6):
+            clusters, by_error = (
+                compare(pack, "--d-init", d_init, presets=f"reference,{preset}") for preset in ("lightcluster", "chandelier"))
+            self.assertLessEqual(by_error["rmse"]["shown"], clusters["rmse"]["shown"], d_init)
+            maps = [comparison["b"]["counters"]["shadow_maps"] for comparison in (by_error, clusters)]
+            self.assertLessEqual(maps[0], 0.6 * maps[1], d_init)
+
 
 class Truth(SceneTest):
     def test_the_reference_comes_near_it(self):

@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// Selection by error: what samples see, what an assignment of lights to shadow maps is expected to cost, and the
+// search.
+#include "lights/error_selection.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include "../gpu/scene_builder.h"
+#include "lights/light_list.h"
+#include "lights/shown_curve.h"
+
+namespace chandelier {
+namespace {
+
+constexpr ShadowReading hard{Filter::hard, 512};
+constexpr float tolerance = 1e-3f;  // of the search's table, as against estimated_rmse()
+constexpr double rounding = 1e-6;
+
+// Straight down on a floor 8 m wide.
+Camera from_above() {
+  Camera camera;
+  camera.eye_ws = {0, 6, 0};
+  camera.forward_ws = {0, -1, 0};
+  camera.up_ws = {0, 0, -1};
+  camera.yfov_rad = 1.1f;
+  return camera;
+}
+
+// A wall along z divides the floor; lights stand at x = -2, -1, 1 and 2 m.
+test::Scene divided_floor() {
+  test::Scene scene;
+  const uint32_t white = scene.add_material(test::plain_material(glm::vec3(0.8f)));
+  scene.add(test::level_square(glm::vec3(0), 4), white);
+  scene.add(test::box({-0.01f, 0.0f, -4.0f}, {0.01f, 4.0f, 4.0f}), white);
+  for (const float x : {-2.0f, -1.0f, 1.0f, 2.0f}) scene.lights.push_back(test::point_light({x, 1.5f, 0.0f}, 10, 20));
+  return scene;
+}
+
+// Pillars under a grid of lights of several colours and ranges.
+test::Scene pillars(uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](float from, float to) {
+    return from + (to - from) * static_cast<float>(random() >> 8) * 0x1p-24f;
+  };
+  test::Scene scene;
+  const uint32_t white = scene.add_material(test::plain_material(glm::vec3(0.7f)));
+  scene.add(test::level_square(glm::vec3(0), 4), white);
+  for (int i = 0; i < 9; ++i) {
+    const glm::vec3 at(uniform(-3, 3), 0.0f, uniform(-3, 3));
+    scene.add(test::box(at, at + glm::vec3(0.3f, uniform(0.5f, 2.0f), 0.3f)), white);
+  }
+  for (int i = 0; i < 24; ++i) {
+    const float x = uniform(-3, 3), z = uniform(-3, 3);
+    scene.lights.push_back(test::point_light({x, uniform(1.0f, 3.0f), z}, uniform(1, 20), uniform(2, 8)));
+  }
+  return scene;
+}
+
+struct Sampled {
+  explicit Sampled(const test::Scene& scene, uint32_t scatter = 0)
+      : pack(scene.open()), rays(pack.view()), sampled(pack.view(), rays), numbers(pack.view().lights.size()) {
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    samples.emplace(sampled, numbers, from_above(), 16.0f / 9.0f, SampleSettings{.scatter = scatter});
+  }
+  double rmse(const std::vector<MapMember>& members) const { return estimated_rmse(*samples, members, hard); }
+
+  pack::File pack;
+  rays::PackRays rays;
+  SampledScene sampled;
+  std::vector<uint32_t> numbers;
+  std::optional<LightSamples> samples;
+};
+
+ErrorLadder ladder_of(const Sampled& sampled) {
+  return ErrorLadder(*sampled.samples, lights::DynamicLights::cluster);
+}
+
+std::set<uint32_t> centers_of(const std::vector<MapMember>& members) {
+  std::set<uint32_t> centers;
+  for (const MapMember& m : members) centers.insert(m.center);
+  return centers;
+}
+
+TEST(LightSamplesTest, PointsAreLitFromTheirSideOfTheWallAlone) {
+  const Sampled s(divided_floor());
+  uint32_t left = 0, right = 0;
+  for (uint32_t p = 0; p < s.samples->points().size(); ++p) {
+    const glm::vec3 at = s.samples->points()[p].position_ws;
+    if (at.y > 0.1f) continue;  // the wall's top
+    EXPECT_NEAR(glm::distance(s.samples->points()[p].normal_ws, glm::vec3(0, 1, 0)), 0.0f, 1e-5f);
+    for (uint32_t light = 0; light < 4; ++light) EXPECT_EQ(s.samples->sees(light, p), (light < 2) == (at.x < 0));
+    (at.x < 0 ? left : right) += 1;
+  }
+  EXPECT_GT(left, 500u);
+  EXPECT_GT(right, 500u);
+}
+
+// What a light adds is what shading/brdf.glsl says: rough white paint, straight below the light.
+TEST(LightSamplesTest, AddsWhatTheShaderAdds) {
+  test::Scene scene;
+  scene.add(test::level_square(glm::vec3(0), 4), scene.add_material(test::plain_material(glm::vec3(0.5f))));
+  scene.lights.push_back(test::point_light({0, 2, 0}, 10, 4));
+  const Sampled s(scene);
+  float nearest = INFINITY, luminance = 0.0f;
+  for (const auto& reach : s.samples->reach(0)) {
+    const float away = glm::length(
+        glm::vec2(s.samples->points()[reach.point].position_ws.x, s.samples->points()[reach.point].position_ws.z));
+    if (away >= nearest) continue;
+    nearest = away;
+    luminance = reach.radiance.x;
+  }
+  ASSERT_LT(nearest, 0.1f);
+  // Illuminance 10 / 4 * (1 - 1/16); Fresnel 0.04 off the diffuse part; the microfacet layer D V F = 1/pi * 1/4 * 0.04.
+  const float expected = 2.5f * 15.0f / 16.0f * (0.96f * 0.5f + 0.04f * 0.25f) / 3.14159265f;
+  EXPECT_NEAR(luminance / std::exp2(s.samples->exposure_ev()) / expected, 1.0f, 0.01f);
+}
+
+TEST(ErrorEstimateTest, OnOneSideOfAWallAMapServesAllAndAcrossItServesNone) {
+  const Sampled s(divided_floor());
+  EXPECT_LT(s.rmse({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {3, 3, 0}}), rounding);
+  const double same_side = s.rmse({{0, 1, 0}, {1, 1, 0}, {2, 2, 0}, {3, 2, 0}});
+  const double across = s.rmse({{0, 0, 0}, {1, 2, 0}, {2, 2, 0}, {3, 3, 0}});
+  EXPECT_LT(same_side, 0.03);  // the wall's top is all that sees them differently
+  EXPECT_GT(across, 0.08);
+}
+
+// Half of the floor is black that should be lit, and the other half gets the light of four instead of two.
+TEST(ErrorEstimateTest, OneMapForBothSidesIsAsWrongAsItIsByHand) {
+  const Sampled s(divided_floor());
+  double sum = 0.0;
+  for (const auto& point : s.samples->points()) {
+    if (point.position_ws.y > 0.1f) continue;
+    glm::vec3 all(0.0f);
+    for (uint32_t light = 0; light < 4; ++light)
+      for (const auto& reach : s.samples->reach(light))
+        if (&s.samples->points()[reach.point] == &point) all += reach.radiance;
+    const glm::vec3 d = shown(point.position_ws.x < 0 ? all : glm::vec3(0.0f)) - shown(point.reference);
+    sum += glm::dot(d, d);
+  }
+  const double by_hand = std::sqrt(sum / (3.0 * s.samples->cell_count()));
+  EXPECT_NEAR(s.rmse({{0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {3, 1, 0}}), by_hand, 0.02 * by_hand);
+}
+
+TEST(ErrorEstimateTest, SoftShadowsCostMoreTheWiderTheyAre) {
+  const Sampled s(pillars(1));
+  std::vector<MapMember> members;
+  for (uint32_t i = 0; i < 24; ++i) members.push_back({i, i, 0.0f});
+  for (const Filter filter : {Filter::pcf, Filter::pcss}) {
+    double last = 0.0;
+    for (const float radius : {0.0f, 1.0f, 4.0f}) {
+      for (MapMember& m : members) m.filter_radius_m = radius;
+      const double now = estimated_rmse(*s.samples, members, {filter, 512});
+      EXPECT_GT(now, last);
+      last = now;
+    }
+  }
+}
+
+TEST(ErrorLadderTest, TwoMapsGoToTheTwoSidesOfAWall) {
+  const Sampled s(divided_floor());
+  const auto members = ladder_of(s).with_at_most(2);
+  EXPECT_EQ(centers_of(members).size(), 2u);
+  for (const MapMember& m : members) EXPECT_EQ(m.light < 2, m.center < 2);
+}
+
+TEST(ErrorLadderTest, MoreMapsNeverCostMoreAndEveryCenterTakesItsOwn) {
+  for (uint32_t seed = 0; seed < 4; ++seed) {
+    const Sampled s(pillars(seed));
+    const ErrorLadder ladder = ladder_of(s);
+    EXPECT_EQ(ladder.fewest_maps(), 1u);
+    double last = INFINITY;
+    for (uint32_t maps = 1; maps <= 24; ++maps) {
+      const auto members = ladder.with_at_most(maps);
+      const auto centers = centers_of(members);
+      ASSERT_EQ(members.size(), 24u);
+      EXPECT_LE(centers.size(), maps);
+      for (const MapMember& m : members) EXPECT_TRUE(!centers.contains(m.light) || m.center == m.light);
+      const double now = s.rmse(members);
+      EXPECT_LE(now, last + tolerance) << seed << ", " << maps << " maps";
+      last = now;
+    }
+    EXPECT_LT(last, rounding);
+  }
+}
+
+TEST(ErrorLadderTest, IsTheSameEveryTime) {
+  const Sampled a(pillars(7)), b(pillars(7));
+  const ErrorLadder first = ladder_of(a), second = ladder_of(b);
+  for (uint32_t maps = 1; maps <= 24; ++maps) {
+    const auto x = first.with_at_most(maps), y = second.with_at_most(maps);
+    ASSERT_EQ(x.size(), y.size());
+    for (size_t i = 0; i < x.size(); ++i) EXPECT_TRUE(x[i].light == y[i].light && x[i].center == y[i].center);
+  }
+}
+
+// The same number of maps chosen by distance alone costs more.
+TEST(ErrorLadderTest, DoesBetterThanDistances) {
+  const Sampled s(pillars(3)), judge(pillars(3), 1);
+  const ErrorLadder ladder = ladder_of(s);
+  for (const float d_init : {1.0f, 1.5f, 2.0f}) {
+    Recipe recipe;
+    recipe.select = Select::light_clusters;
+    recipe.filter = Filter::pcf;
+    recipe.d_init_m = d_init;
+    const LightList list = select_lights(s.pack.view().lights, recipe, from_above(), 16.0f / 9.0f);
+    std::vector<MapMember> clusters;
+    for (size_t i = 0; i < list.pack_light.size(); ++i) clusters.push_back({list.pack_light[i], list.center[i], 0.0f});
+    const auto maps = static_cast<uint32_t>(list.maps.size());
+    EXPECT_LT(judge.rmse(ladder.with_at_most(maps)), 0.8 * judge.rmse(clusters)) << maps << " maps";
+  }
+}
+
+TEST(ErrorLadderTest, KeepsWithinAnErrorWithAsFewMapsAsItCan) {
+  const Sampled s(pillars(5)), judge(pillars(5), 1);
+  const ErrorLadder ladder = ladder_of(s);
+  size_t last = 25;
+  for (const double most : {rounding, 0.01, 0.03, 0.1, 1.0}) {
+    const auto members = ladder.within(most, *judge.samples, hard);
+    const size_t maps = centers_of(members).size();
+    EXPECT_LE(judge.rmse(members), most);
+    EXPECT_LE(maps, last);
+    last = maps;
+  }
+  EXPECT_EQ(last, 1u);
+}
+
+TEST(ErrorLadderTest, AnUnclusteredLightKeepsItsMapForItself) {
+  test::Scene scene = divided_floor();
+  scene.lights[1].unclustered = 1;
+  const Sampled s(scene);
+  const ErrorLadder ladder = ladder_of(s);
+  EXPECT_EQ(ladder.fewest_maps(), 2u);
+  for (const MapMember& m : ladder.with_at_most(1)) EXPECT_EQ(m.light == 1, m.center == 1);
+}
+
+TEST(ErrorLadderTest, DirectionalLightsShareAmongThemselves) {
+  test::Scene scene = divided_floor();
+  scene.lights.push_back(test::directional_light({0, -1, 0.1f}, 2));
+  scene.lights.push_back(test::directional_light({0, -1, 0.12f}, 2));
+  const Sampled s(scene);
+  const ErrorLadder ladder = ladder_of(s);
+  EXPECT_EQ(ladder.fewest_maps(), 2u);
+  for (const MapMember& m : ladder.with_at_most(1)) EXPECT_EQ(m.light < 4, m.center < 4);
+}
+
+TEST(ErrorDrivenTest, ListsEveryLightInViewOnceUnderAsFewMapsAsItsErrorAllows) {
+  const Sampled s(divided_floor());
+  Surroundings surroundings(s.pack.view());
+  Recipe recipe;
+  recipe.select = Select::error_driven;
+  recipe.d_init_m = 1.2f;  // light clusters are the same two, but softer
+  const LightList list =
+      select_lights(s.pack.view().lights, recipe, from_above(), 16.0f / 9.0f, {.surroundings = &surroundings});
+  EXPECT_EQ(list.lights.size(), 4u);
+  EXPECT_EQ(list.maps.size(), 2u);
+  for (const frame::ShadowMap& map : list.maps) {
+    EXPECT_EQ(map.filter_radius_m, 0.0f);
+    EXPECT_EQ(map.light_count, 2u);
+    EXPECT_NEAR(map.range_m, 21.0f, 1e-4f);  // C_att: the other light stands 1 m away
+  }
+  EXPECT_THROW(select_lights(s.pack.view().lights, recipe, from_above(), 1.0f), std::invalid_argument);
+}
+
+TEST(ShownCurveTest, TableAndFormulaAgree) {
+  const ShownCurve table;
+  for (float x = 0.0f; x < 40.0f; x = x * 1.01f + 1e-4f) EXPECT_NEAR(table(x), shown(x), 3e-4f) << x;
+  EXPECT_EQ(shown(0.0f), 0.0f);
+  EXPECT_NEAR(shown(1e9f), 1.0f, 1e-6f);
+  // Narkowicz's curve at 0.18: 0.0869 / 0.3249, by sRGB.
+  EXPECT_NEAR(shown(0.18f), 1.055f * std::pow(0.086724f / 0.324932f, 1.0f / 2.4f) - 0.055f, 1e-4f);
+}
+
+TEST(MeanMaterialTest, TexturesCountByTheirMean) {
+  test::Scene scene;
+  pack::Material material = test::plain_material({1.0f, 0.5f, 1.0f});
+  material.base_color_texture = scene.add_texture(2, 1, {0xFF000000u, 0xFFFF80FFu});
+  scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
+  // BC1: both ends of a red ramp and the two colours between, a quarter of the texels each.
+  pack::Image bc1{.width = 4, .height = 4, .level_count = 1, .format = pack::ImageFormat::bc1_unorm};
+  const std::array<uint8_t, 8> block{0x00, 0xF8, 0x00, 0x00, 0b11100100, 0b11100100, 0b11100100, 0b11100100};
+  material.base_color_texture = scene.add_texture(bc1, std::as_bytes(std::span(block)));
+  scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
+  const auto means = mean_materials(scene.open().view());
+  ASSERT_EQ(means.size(), 2u);
+  EXPECT_NEAR(glm::distance(means[0].base_color, {0.5f, 0.5f * 128 / 255 / 2, 0.5f}), 0.0f, 1e-3f);
+  EXPECT_NEAR(glm::distance(means[1].base_color, {0.5f, 0.0f, 0.0f}), 0.0f, 1e-3f);
+}
+
+}  // namespace
+}  // namespace chandelier
