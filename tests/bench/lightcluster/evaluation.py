@@ -7,6 +7,7 @@ import paper
 import scenes
 import tables
 from page import Figure, Heading, Paragraph
+from play import PATH_FACE_SIZE, PATH_SIZE
 from verdicts import RATIO_COUNTS, conditions
 
 TITLE = "LightCluster, measured as its paper was"
@@ -25,7 +26,7 @@ def picture_name(name, row, what):
 def blocks(results):
     return [Heading(1, TITLE), *opening(results), *time_blocks(results), *step_blocks(results), *selection_blocks(results),
             *filter_blocks(results), *error_blocks(results), *memory_blocks(results), *error_driven_blocks(results),
-            *prediction_blocks(results), *picture_blocks(results)]
+            *prediction_blocks(results), *path_blocks(results), *picture_blocks(results)]
 
 
 def opening(results):
@@ -117,6 +118,14 @@ def prediction_blocks(results):
         "visibility textures)."), tables.prediction_table(results), Paragraph(
         "The way back: d_init chosen by `--max-shadow-maps`, asked for as many maps as the paper drew."),
         tables.budget_table(results)]
+
+
+def path_blocks(results):
+    return [Heading(2, "A moving camera (section 5.6)"), Paragraph(
+        "How many lights take another map than a frame ago, and how far the picture is from the same view with every light at its "
+        "map of a frame ago: what the selection changes and the camera's motion does not explain. Means over the frames, drawn at "
+        f"{PATH_SIZE} with faces of {PATH_FACE_SIZE}²."),
+        tables.path_table(results)]
 
 
 def picture_blocks(results):

@@ -3,6 +3,7 @@
 
 import shutil
 import statistics
+import sys
 
 import paper
 import play
@@ -10,22 +11,11 @@ import scenes
 from jobs import Jobs
 
 FILTERS = {"pcss": "lightcluster", "pcf": "lightcluster-pcf"}  # filter: preset
+PATH_FRAMES = 30
+# What a camera is moved with, and the options that make it so (LightCluster §5.6 names the second).
+PATH_RECIPES = (("the paper's selection", ()), ("d_min without distance", ("--distance-scaling", "none")),
+                ("stability 0.3", ("--stability", "0.3")), ("error-driven", ("--select", "error-driven")))
 SWEEP_M = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.2, 1.6)  # Figure 6
-SEARCH_STEP = 1.02  # from one d_init to the next where a number of clusters is searched for
-SEARCH_STEPS = 60
-
-
-def search_d_init(count_at, clusters, start_m):
-    """The d_init nearest to `start_m` (as a ratio) that gives so many clusters, or None: their number is not monotone in it."""
-    for step in range(SEARCH_STEPS):
-        for d_init_m in {start_m * SEARCH_STEP**step, start_m * SEARCH_STEP**-step}:
-            if count_at(d_init_m) == clusters:
-                return d_init_m
-    return None
-
-
-def paper_d_init(scene, clusters):
-    return next(row[0] for row in paper.TABLE_1[scene.paper]["rows"] if row[1] == clusters)
 
 
 def at(name, row):
@@ -50,6 +40,8 @@ class Evaluation:
                 continue
             players[scene.name] = play.Player(self.arguments.play, pack, scene.camera, self.arguments, self.folder / scene.name)
             self.results["scenes"][scene.name] = self.open_scene(scene, players[scene.name])
+        if not players:
+            sys.exit("no scene is left to measure")
         self.jobs.add("selection", "selection time over the number of lights", self.selection)
         for repeat in range(self.arguments.repeats):  # all configurations in turns, so that a slow moment falls on all
             for name, player in players.items():
@@ -59,6 +51,7 @@ class Evaluation:
             self.add_counts(name, player)
             self.add_budgets(name, player)
             self.add_error_driven(name, player)
+            self.add_paths(name, player)
         if "sponza" in players:
             self.add_steps(players["sponza"])
         self.jobs.run()
@@ -67,18 +60,17 @@ class Evaluation:
     def open_scene(self, scene, player):
         d_inits = {d: None for d in scene.d_inits}  # d_init: the number of clusters that it was searched for
         for clusters in scene.counts:
-            print(f"{scene.name}: searching d_init for {clusters} clusters", flush=True)
-            found = search_d_init(player.clusters, clusters, paper_d_init(scene, clusters))
-            if found is None:
-                self.results["left_out"].append(f"{scene.title} with {clusters} clusters (no d_init found)")
+            found = player.budget(clusters)
+            if found["shadow_maps"] == clusters:
+                d_inits[found["d_init_m"]] = clusters
             else:
-                d_inits[found] = clusters
+                self.results["left_out"].append(f"{scene.title} with {clusters} clusters (no d_init gives so many)")
         stats = player.draw("reference", "reference")
         self.results |= {"device": stats["device"], "driver": stats["driver"]}
         return {"title": scene.title, "camera": scene.camera, "lights": stats["counters"]["lights"],
                 "lights_in_view": stats["counters"]["lights_in_view"], "exposure_ev": stats["exposure_ev"],
                 "rows": [{"d_init_m": d, "searched": searched, "filters": {}} for d, searched in sorted(d_inits.items())],
-                "automatic": {"ratio": []}, "sweep": [], "budgets": []}
+                "automatic": {"ratio": []}, "sweep": [], "budgets": [], "paths": []}
 
     def selection(self):
         self.results["selection"] = play.selection_times(self.arguments.chandelier_bench, self.arguments.repeats)
@@ -157,12 +149,7 @@ class Evaluation:
         made = self.results["scenes"][name]
         for clusters in [row[1] for row in paper.TABLE_1[scenes.by_name(name).paper]["rows"]]:
             self.jobs.add((name, "budget"), f"{name}: d_init for {clusters} shadow maps",
-                          lambda clusters=clusters: made["budgets"].append(self.budget(player, clusters)))
-
-    def budget(self, player, clusters):
-        found = player.predict("lightcluster", "--max-shadow-maps", clusters, *play.NO_REFERENCE_PATH)
-        return {"max_shadow_maps": clusters, "d_init_m": found["recipe"]["settings"]["d_init_m"],
-                "shadow_maps": found["counters"]["shadow_maps"]}
+                          lambda clusters=clusters: made["budgets"].append(player.budget(clusters)))
 
     def add_error_driven(self, name, player):
         made = self.results["scenes"][name]
@@ -177,6 +164,17 @@ class Evaluation:
         select = next(stage for stage in stats["stages"] if stage["name"] == "select")
         row["error_driven"] = {"shadow_maps": stats["counters"]["shadow_maps"], "select_ms": select["cpu_ms"],
                                "rmse": play.rmse(play.picture(player, "reference"), play.picture(player, "error_driven"))}
+
+    def add_paths(self, name, player):
+        scene, made = scenes.by_name(name), self.results["scenes"][name]
+        for recipe, options in PATH_RECIPES:
+            self.jobs.add((name, recipe), f"{name}: moving camera, {recipe}",
+                          lambda recipe=recipe, options=options: made["paths"].append(self.path(player, scene, recipe, options)))
+
+    def path(self, player, scene, recipe, options):
+        d_init_m, frames = scene.d_inits[2], self.arguments.path_frames
+        result = player.path("lightcluster", scene.walk, frames, "--d-init", d_init_m, *play.NO_REFERENCE_PATH, *options)
+        return {"recipe": recipe, "d_init_m": d_init_m, "frames": frames, **result["mean"]}
 
     def add_steps(self, player):
         """Table 2, and Figure 5: PCF beside PCSS, with visibility textures as the paper has them."""

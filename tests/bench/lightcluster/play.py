@@ -13,6 +13,8 @@ from scenes import run
 # Never the reference's path by itself: the paper measured LightCluster with 80 clusters of 80 lights, too.
 NO_REFERENCE_PATH = ("--reference-share", "2")
 
+PATH_SIZE, PATH_FACE_SIZE = "480x270", 256  # of a moving camera's many pictures
+
 
 def shown(path):
     """A picture as on a screen, 0..1, height x width x 3."""
@@ -30,31 +32,44 @@ class Player:
     def __init__(self, program, pack, camera, arguments, folder):
         self.folder = Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.base = [program, pack, "--camera", camera]
+        self.program = [program, pack]
+        self.view = ["--camera", camera]
         self.device = ["--device", arguments.device] if arguments.device else []
         self.size = ["--size", arguments.size, "--face-size", arguments.face_size]
 
     def compare(self, a, b, name, *options, frames=1):
         """Both presets in turns in one process; comparison.json, its pictures in folder/name."""
         report = self.folder / name
-        run([*self.base, *self.device, *self.size, "--compare", f"{a},{b}", "--report", report, "--frames", frames, *options])
+        run([*self.program, *self.view, *self.device, *self.size, "--compare", f"{a},{b}", "--report", report, "--frames", frames,
+             *options])
         return json.loads((report / "comparison.json").read_text())
 
     def draw(self, preset, name, *options):
         """One frame; its statistics, its picture in folder/name.png."""
         picture, stats = self.folder / f"{name}.png", self.folder / f"{name}.json"
-        run([*self.base, *self.device, *self.size, "--preset", preset, "--output", picture, "--stats", stats, *options])
+        run([*self.program, *self.view, *self.device, *self.size, "--preset", preset, "--output", picture, "--stats", stats,
+             *options])
         return json.loads(stats.read_text())
 
     def predict(self, preset, *options):
         """What a frame will take, from the pack alone: no device is opened."""
         stats = self.folder / "prediction.json"
-        run([*self.base, *self.size, "--predict", "--preset", preset, "--stats", stats, *options])
+        run([*self.program, *self.view, *self.size, "--predict", "--preset", preset, "--stats", stats, *options])
         return json.loads(stats.read_text())
 
-    def clusters(self, d_init_m):
-        """How many light clusters there are."""
-        return self.predict("lightcluster", "--d-init", d_init_m, *NO_REFERENCE_PATH)["counters"]["light_clusters"]
+    def path(self, preset, keys, frames, *options):
+        """What changes from frame to frame while the camera goes from key to key."""
+        file = self.folder / "walk.json"
+        file.write_text(json.dumps({"keys": keys}))
+        run([*self.program, *self.device, "--size", PATH_SIZE, "--face-size", PATH_FACE_SIZE, "--path", file,
+             "--preset", preset, "--frames", frames, "--report", self.folder / "path", *options])
+        return json.loads((self.folder / "path" / "path.json").read_text())
+
+    def budget(self, shadow_maps):
+        """The smallest d_init, so the most shadow maps, within so many."""
+        found = self.predict("lightcluster", "--max-shadow-maps", shadow_maps, *NO_REFERENCE_PATH)
+        return {"max_shadow_maps": shadow_maps, "d_init_m": found["recipe"]["settings"]["d_init_m"],
+                "shadow_maps": found["counters"]["shadow_maps"]}
 
 
 def picture(player, name):

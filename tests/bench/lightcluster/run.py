@@ -58,9 +58,9 @@ def parse(arguments):
     made = parser.parse_args(arguments)
     programs = Path(made.programs)
     made.play, made.bake, made.chandelier_bench = (programs / f"chandelier-{name}" for name in ("play", "bake", "bench"))
-    made.sweep = measure.SWEEP_M
+    made.sweep, made.path_frames = measure.SWEEP_M, measure.PATH_FRAMES
     if made.quick:
-        made.repeats, made.sweep = 1, ()
+        made.repeats, made.sweep, made.path_frames = 1, (), 4
     return made
 
 

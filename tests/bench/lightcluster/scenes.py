@@ -19,16 +19,21 @@ class Scene:
     d_inits: tuple  # the paper's, metres
     pictures: tuple  # d_inits whose pictures the page shows, as the paper's Figures 7 to 9 do
     script: str  # in examples/
+    walk: tuple  # of a moving camera: where it begins and ends, as --path takes them
     data: str = ""  # a glTF of the test data that is baked with it
     counts: tuple = ()  # numbers of clusters for which d_init is searched, since the goals are stated for them
 
 
 SCENES = (
     Scene("sponza", "Crytek's Sponza under 80 lights", "hall", "sponza", PAPER_SPONZA_D_INITS, (), "sponza_rig.py",
+          ("-11.2,1.7,-0.25,0,2.3,-0.25,60", "-4,1.7,-0.25,7.2,2.3,-0.25,60"),
           "scenes/crytek_sponza/crytek_sponza.gltf", (44, 26, 10)),
-    Scene("atrium", "Atrium under 80 lights", "hall", "sponza", PAPER_SPONZA_D_INITS, (0.5, 1.6), "atrium.py"),
-    Scene("cornell", "Cornell box under 32 lights", "front", "cornell", (0.3, 0.4, 0.5, 0.6), (0.5, 0.6), "cornell.py"),
-    Scene("restaurant", "Restaurant under 14 lights", "table", "restaurant", (0.2, 0.3, 0.4, 0.5), (0.3, 0.4), "restaurant.py"),
+    Scene("atrium", "Atrium under 80 lights", "hall", "sponza", PAPER_SPONZA_D_INITS, (0.5, 1.6), "atrium.py",
+          ("-11,2,2,0,2,0,60", "-4,2,1,7,2,0,60")),
+    Scene("cornell", "Cornell box under 32 lights", "front", "cornell", (0.3, 0.4, 0.5, 0.6), (0.5, 0.6), "cornell.py",
+          ("-0.3,0.5,1.55,0,0.5,0,45", "0.3,0.5,1.1,0,0.5,0,45")),
+    Scene("restaurant", "Restaurant under 14 lights", "table", "restaurant", (0.2, 0.3, 0.4, 0.5), (0.3, 0.4), "restaurant.py",
+          ("-1.05,1.45,2.75,0.1,1.05,0,50", "1,1.45,2.2,0.1,1.05,0,50")),
 )
 
 

@@ -139,6 +139,14 @@ def prediction_table(results):
                  "Predicted / counted")
 
 
+def path_table(results):
+    rows = [[f"{made['title']}, d_init {p['d_init_m']:.3g} m", p["recipe"], str(p["frames"]), f"{p['shadow_maps']:.1f}",
+             f"{p['lights_changed']:.2f}", f"{p['unexplained_rmse']:.5f}"]
+            for made in results["scenes"].values() for p in made["paths"]]
+    return Table(["scene", "selection", "frames", "shadow maps a frame", "lights that change their map, a frame",
+                  "RMSE unexplained, a frame"], rows)
+
+
 def budget_table(results):
     rows = [[made["title"], str(b["max_shadow_maps"]), f"{b['d_init_m']:.3f}", str(b["shadow_maps"])]
             for made in results["scenes"].values() for b in made["budgets"]]
