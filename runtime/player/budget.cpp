@@ -23,12 +23,20 @@ std::string in_words(const std::vector<SharedMap>& shared) {
   return text;
 }
 
-void tell(const NamedRecipe& named, const BudgetedPlan& plan) {
+void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budget) {
   const FrameStats& stats = plan.prediction.stats;
   if (!plan.keeps_budget)
     fmt::print(stderr, "chandelier-play: warning: {}: no d-init keeps the budget; {} shadow maps, {} bytes are left\n",
                named.preset, stats.shadow_maps, stats.shadow_bytes);
-  if (plan.d_init_m == 0.0f) return;
+  if (plan.expected_rmse)
+    fmt::print(stderr, "{}: d-init {:.4g} m makes {} shadow maps, expected RMSE {:.4f}\n", named.preset, plan.d_init_m,
+               stats.shadow_maps, *plan.expected_rmse);
+  if (plan.expected_rmse && *plan.expected_rmse > double{*budget.max_error})
+    fmt::print(stderr,
+               "chandelier-play: warning: {}: --max-error {} is missed by {:.4f}; maps or bytes allow no less\n",
+               named.preset, *budget.max_error, *plan.expected_rmse - double{*budget.max_error});
+  const bool is_limited = budget.max_shadow_maps || budget.max_shadow_bytes;
+  if (plan.d_init_m == 0.0f || !is_limited || named.shared_maps->empty()) return;
   fmt::print(
       stderr,
       "{}: over budget with a shadow map for each of {} lights: d-init {:.4g} m makes {}; without their own: {}\n",
@@ -54,7 +62,8 @@ void apply_budget(Options& options, const NamedCamera& camera, const pack::File&
         choose_d_init(predictor, render_settings(options, named.recipe, camera.camera, {}), options.budget);
     named.recipe.d_init_m = plan.d_init_m;
     named.shared_maps = shared_maps(pack, plan.prediction.plan.list);
-    tell(named, plan);
+    named.expected_rmse = plan.expected_rmse;
+    tell(named, plan, options.budget);
   }
 }
 

@@ -54,6 +54,7 @@ Run side_run(const Options& options, const NamedCamera& camera, const gpu::Devic
   run.frames = static_cast<uint32_t>(side.frames.size());
   run.stats = medians(side.frames);
   run.shared_maps = options.recipes[index].shared_maps;
+  run.expected_rmse = options.recipes[index].expected_rmse;
   const bool same = options.recipes[0].preset == options.recipes[1].preset;
   const std::string stem = same ? fmt::format("{}_{}", run.preset, index == 0 ? 'a' : 'b') : run.preset;
   run.image = stem + ".png";

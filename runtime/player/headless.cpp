@@ -29,6 +29,7 @@ void run_headless(const Options& options, const NamedCamera& camera, const gpu::
   run.frames = static_cast<uint32_t>(frames.size());
   run.stats = medians(frames);
   run.shared_maps = named.shared_maps;
+  run.expected_rmse = named.expected_rmse;
   run.image = options.output.filename().string();
   write_picture(options.output, renderer.read_back());
   if (!options.stats.empty()) write_file(options.stats, to_json(run).dump(2) + "\n");

@@ -103,8 +103,11 @@ NamedRecipe make_side(const std::string& preset_name, Typed typed) {
 void read_budget(const Typed& typed, Options& options) {
   if (typed.max_shadow_maps) options.budget.max_shadow_maps = *typed.max_shadow_maps;
   if (typed.max_shadow_bytes) options.budget.max_shadow_bytes = uint64_t{*typed.max_shadow_bytes} << 20;
+  options.budget.max_error = typed.max_error;
   if (!options.budget.is_given()) return;
-  const std::string_view option = typed.max_shadow_maps ? "--max-shadow-maps" : "--max-shadow-bytes";
+  const std::string_view option = typed.max_shadow_maps    ? "--max-shadow-maps"
+                                  : typed.max_shadow_bytes ? "--max-shadow-bytes"
+                                                           : "--max-error";
   if (typed.d_init) throw UsageError(fmt::format("{}: cannot be used with --d-init, which it chooses", option));
   if (std::none_of(options.recipes.begin(), options.recipes.end(),
                    [](const NamedRecipe& each) { return each.recipe.select != Select::per_light; }))

@@ -20,6 +20,7 @@ struct NamedRecipe {
   std::string preset;
   Recipe recipe;                                      // the preset's, with every explicit setting applied
   std::optional<std::vector<SharedMap>> shared_maps;  // where a budget chose d_init
+  std::optional<double> expected_rmse;                // where an error did
 };
 
 struct Options {

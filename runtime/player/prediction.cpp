@@ -22,6 +22,7 @@ void print_table(const Run& run) {
              run.camera.name.empty() ? "camera by numbers" : "camera " + run.camera.name, run.preset);
   for (const Counter& counter : counters())
     fmt::print("  {:<22}{:>14}\n", counter.name, in_units(counter, run.stats.*counter.value));
+  fmt::print("  {:<22}{:>14}\n", "expected_rmse_shown", fmt::format("{:.4f}", *run.expected_rmse));
   fmt::print("  {:<22}{:>14}\n", "d_init_m", fmt::format("{:.4g}", run.settings.recipe.d_init_m));
 }
 
@@ -37,6 +38,7 @@ void run_prediction(const Options& options, const NamedCamera& camera, const pac
   run.settings = render_settings(options, named.recipe, camera.camera, {});
   const Prediction prediction = predictor.predict(run.settings);
   run.stats = prediction.stats;
+  run.expected_rmse = predictor.expected_rmse(run.settings, prediction.plan);
   run.shared_maps = shared_maps(pack, prediction.plan.list);
   print_table(run);
   if (!options.stats.empty()) write_file(options.stats, prediction_json(run).dump(2) + "\n");

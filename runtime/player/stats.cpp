@@ -118,6 +118,7 @@ Json to_json(const Run& run) {
                {"counters", counters_json(run.stats)}};
   if (!run.image.empty()) json["image"] = run.image;
   if (!run.radiance.empty()) json["radiance"] = run.radiance;
+  if (run.expected_rmse) json["expected_rmse_shown"] = *run.expected_rmse;
   if (run.shared_maps) json["lights_without_own_map"] = shared_maps_json(*run.shared_maps);
   return json;
 }
@@ -129,6 +130,7 @@ Json prediction_json(const Run& run) {
           {"preset", run.preset},
           {"recipe", recipe_json(run.settings.recipe)},
           {"counters", counters_json(run.stats)},
+          {"expected_rmse_shown", *run.expected_rmse},
           {"lights_without_own_map", shared_maps_json(*run.shared_maps)}};
 }
 

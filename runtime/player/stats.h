@@ -33,6 +33,7 @@ struct Run {
   std::string image;     // the picture's file name; empty: none
   std::string radiance;  // the EXR's; empty: none
   std::optional<std::vector<SharedMap>> shared_maps;
+  std::optional<double> expected_rmse;  // of the shown picture, told before it was drawn
 };
 
 struct Counter {

@@ -182,7 +182,7 @@ void declare_recipe(CLI::App& app, Typed& typed) {
 }
 
 void declare_budget(CLI::App& app, Typed& typed) {
-  const std::string group = "Budget (chooses d-init: as many shadow maps as it allows)";
+  const std::string group = "Budget (chooses d-init; maps and bytes come before the error)";
   app.add_option("--max-shadow-maps", typed.max_shadow_maps, "Most shadow maps of a frame")
       ->type_name("N")
       ->check(number_between(1, 1e9))
@@ -190,6 +190,12 @@ void declare_budget(CLI::App& app, Typed& typed) {
   app.add_option("--max-shadow-bytes", typed.max_shadow_bytes, "Most depth of all shadow maps of a frame, MiB")
       ->type_name("MIB")
       ->check(number_between(1, 1 << 20))
+      ->group(group);
+  app.add_option(
+         "--max-error", typed.max_error,
+         "Most error expected of the shown picture, RMSE against a shadow map for each light; as few maps as do")
+      ->type_name("RMSE")
+      ->check(number_between(0, 1))
       ->group(group);
 }
 

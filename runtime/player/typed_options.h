@@ -22,7 +22,7 @@ struct Typed {
   bool predict = false;
   bool validation = false;
   std::vector<std::string> answers;  // one per stage; empty where not given
-  std::optional<float> d_init, z_far, reference_share, stability;
+  std::optional<float> d_init, z_far, reference_share, stability, max_error;
   std::string distance_scaling, dynamic_lights, area_radius, walls;
   std::optional<uint32_t> face_size, shadow_budget, max_shadow_maps, max_shadow_bytes;
   float ambient = 0.0f;

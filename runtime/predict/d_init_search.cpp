@@ -8,17 +8,23 @@
 namespace chandelier {
 namespace {
 
-constexpr int ladder_values = 96;
-constexpr int halvings = 12;
 constexpr float least_d_init_m = 1e-3f;
 
-// 0, and d_init up to where the recipe has no smaller clusters any more.
-std::vector<float> ladder(float farthest_m) {
+// How finely d_init is looked through: an error takes much longer to tell than a number of maps.
+struct Effort {
+  int ladder_values;
+  int halvings;
+};
+constexpr Effort for_maps{96, 12};
+constexpr Effort for_error{32, 4};
+
+// 0, and d_init up to where every light is within d_min of every other, evenly in its logarithm.
+std::vector<float> ladder(float farthest_m, const Effort& effort) {
   std::vector<float> values{0.0f};
   const float top = std::max(2.0f * farthest_m, 2.0f * least_d_init_m);
-  for (int i = 0; i < ladder_values; ++i)
-    values.push_back(least_d_init_m *
-                     std::pow(top / least_d_init_m, static_cast<float>(i) / static_cast<float>(ladder_values - 1)));
+  for (int i = 0; i < effort.ladder_values; ++i)
+    values.push_back(least_d_init_m * std::pow(top / least_d_init_m,
+                                               static_cast<float>(i) / static_cast<float>(effort.ladder_values - 1)));
   return values;
 }
 
@@ -32,34 +38,48 @@ float farthest_apart_m(const LightList& list) {
   return list.lights.empty() ? 0.0f : glm::distance(low, high);
 }
 
-bool keeps(const Budget& budget, const FrameStats& stats) {
-  return stats.shadow_maps <= budget.max_shadow_maps.value_or(UINT64_MAX) &&
-         stats.shadow_bytes <= budget.max_shadow_bytes.value_or(UINT64_MAX);
+// Takes the first of `values` that is good, the last where none is, and from a good one goes on towards the bad one
+// before it.
+template <typename IsGood>
+float first_good(const std::vector<float>& values, int halvings, IsGood is_good) {
+  const auto found = std::find_if(values.begin(), values.end(), is_good);
+  if (found == values.end()) return values.back();
+  if (found == values.begin()) return *found;
+  float good = *found, bad = *(found - 1);
+  for (int i = 0; i < halvings; ++i) {
+    const float middle = 0.5f * (good + bad);
+    (is_good(middle) ? good : bad) = middle;
+  }
+  return good;
 }
 
 }  // namespace
 
 BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const Budget& budget) {
-  const auto at = [&](float d_init_m) {
+  const auto plan_at = [&](float d_init_m) {
     settings.recipe.d_init_m = d_init_m;
-    Prediction prediction = predictor.plan(settings);
-    const bool fits = keeps(budget, prediction.stats);
-    return BudgetedPlan{d_init_m, fits, std::move(prediction)};
+    return predictor.plan(settings);
   };
-  BudgetedPlan best = at(0.0f);
-  float too_small = 0.0f;
-  for (const float d_init_m : ladder(farthest_apart_m(best.prediction.plan.list))) {
-    if (best.keeps_budget) break;
-    too_small = best.d_init_m;
-    best = at(d_init_m);
+  const auto fits = [&](const FrameStats& stats) {
+    return stats.shadow_maps <= budget.max_shadow_maps.value_or(UINT64_MAX) &&
+           stats.shadow_bytes <= budget.max_shadow_bytes.value_or(UINT64_MAX);
+  };
+  const auto rmse_at = [&](float d_init_m) { return predictor.expected_rmse(settings, plan_at(d_init_m).plan); };
+
+  const float farthest_m = farthest_apart_m(plan_at(0.0f).plan.list);
+  BudgetedPlan best;
+  if (budget.max_error) {
+    std::vector<float> values = ladder(farthest_m, for_error);
+    std::reverse(values.begin(), values.end());
+    best.d_init_m = first_good(values, for_error.halvings,
+                               [&](float d_init_m) { return rmse_at(d_init_m) <= double{*budget.max_error}; });
   }
-  for (int i = 0; i < halvings && best.keeps_budget && best.d_init_m > 0.0f; ++i) {
-    BudgetedPlan middle = at(0.5f * (too_small + best.d_init_m));
-    if (middle.keeps_budget)
-      best = std::move(middle);
-    else
-      too_small = middle.d_init_m;
-  }
+  if (!fits(plan_at(best.d_init_m).stats))
+    best.d_init_m = first_good(ladder(farthest_m, for_maps), for_maps.halvings,
+                               [&](float d_init_m) { return fits(plan_at(d_init_m).stats); });
+  best.prediction = plan_at(best.d_init_m);
+  best.keeps_budget = fits(best.prediction.stats);
+  if (budget.max_error) best.expected_rmse = rmse_at(best.d_init_m);
   return best;
 }
 

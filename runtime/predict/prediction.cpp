@@ -36,6 +36,14 @@ Prediction Predictor::plan(const RenderSettings& settings) {
   return prediction;
 }
 
+double Predictor::expected_rmse(const RenderSettings& settings, const FramePlan& plan) {
+  if (plan.recipe.select == Select::per_light && plan.recipe.filter == Filter::hard) return 0.0;  // it is the reference
+  const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+  return chandelier::expected_rmse(
+      plan.list, plan.recipe, settings.camera, aspect,
+      {.surroundings = &surroundings_, .ambient = settings.ambient, .exposure_ev = settings.exposure_ev});
+}
+
 Prediction Predictor::predict(const RenderSettings& settings) {
   Prediction prediction = plan(settings);
   const std::span<const frame::ShadowView> views(prediction.plan.views);

@@ -23,6 +23,9 @@ class Predictor {
   Prediction plan(const RenderSettings& settings);
   /// All counters of a frame.
   Prediction predict(const RenderSettings& settings);
+  /// Of a frame planned with these settings: RMSE of the shown picture, 0 to 1, against one hard shadow map for each
+  /// light (lights/ERROR_SELECTION.md).
+  double expected_rmse(const RenderSettings& settings, const FramePlan& plan);
 
  private:
   pack::View pack_;

@@ -208,6 +208,17 @@ class Predict(PlayTest):
         self.assertEqual(told["recipe"]["settings"]["d_init_m"], 0)
         self.assertEqual(told["lights_without_own_map"], [])
 
+    def test_an_error_that_the_budget_misses_is_told(self):
+        told, done = self.predict("--preset", "lightcluster", "--max-error", 0.05)
+        self.assertLessEqual(told["expected_rmse_shown"], 0.05)
+        self.assertGreater(told["recipe"]["settings"]["d_init_m"], 0)
+        told, done = self.predict("--preset", "lightcluster", "--max-error", 0.001, "--max-shadow-maps", 4)
+        self.assertLessEqual(told["counters"]["shadow_maps"], 4)
+        missed = float(re.search(r"--max-error 0.001 is missed by ([0-9.]+)", done.stderr).group(1))
+        self.assertAlmostEqual(told["expected_rmse_shown"], 0.001 + missed, delta=2e-4)
+        drawn = self.stats("--preset", "lightcluster", "--max-error", 0.05)
+        self.assertLessEqual(drawn["expected_rmse_shown"], 0.05)
+
     def test_bytes_are_a_budget_too(self):
         told, _ = self.predict("--preset", "lightcluster", "--max-shadow-bytes", 1)
         self.assertLessEqual(told["counters"]["shadow_bytes"], 1 << 20)

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "bake/bake.h"
 #include "predict/d_init_search.h"
 
 namespace chandelier {
@@ -100,6 +101,74 @@ TEST(Budget, SaysWhereNoClusterKeepsIt) {
   const BudgetedPlan plan = choose_d_init(predictor, settings, {.max_shadow_maps = 1});
   EXPECT_FALSE(plan.keeps_budget);
   EXPECT_GT(plan.prediction.stats.shadow_maps, 1u);
+}
+
+// A floor with posts on it and lamps above, as the camera of clustered() sees it.
+pack::Contents posts_on_a_floor() {
+  baker::Scene scene;
+  scene.materials.emplace_back();
+  baker::Primitive& out = scene.meshes.emplace_back().primitives.emplace_back();
+  const auto add_quad = [&](const glm::vec3& a, const glm::vec3& u, const glm::vec3& v) {
+    const auto first = static_cast<uint32_t>(out.vertices.size());
+    for (const glm::vec3& corner : {a, a + u, a + u + v, a + v}) out.vertices.push_back({.position_ls = corner});
+    for (const uint32_t corner : {0, 1, 2, 0, 2, 3}) out.indices.push_back(first + corner);
+  };
+  add_quad({-6, -2, 6}, {12, 0, 0}, {0, 0, -12});
+  for (int i = 0; i < 16; ++i) {
+    const float x = -4.0f + 2.5f * static_cast<float>(i % 4), z = -4.0f + 2.5f * static_cast<float>(i / 4);
+    add_quad({x, -2, z}, {0.3f, 0, 0}, {0, 1.5f, 0});
+    add_quad({x, -2, z}, {0, 0, -0.3f}, {0, 1.5f, 0});
+  }
+  scene.instances.emplace_back().mesh = 0;
+  for (int i = 0; i < 24; ++i) {
+    const float x = -4.0f + 1.6f * static_cast<float>(i % 6), z = -4.0f + 2.4f * static_cast<float>(i / 6);
+    scene.lights.push_back({.name = std::to_string(i), .position_ws = {x, 0.5f, z}, .intensity = 3, .range_m = 5.0f});
+  }
+  baker::Report report;
+  baker::Warnings warnings;
+  return baker::bake(std::move(scene), {}, baker::Progress(false), report, warnings);
+}
+
+TEST(Budget, OfErrorIsKeptByAsFewMapsAsDo) {
+  const pack::Contents pack = posts_on_a_floor();
+  const pack::View view = pack::view_of(pack);
+  Predictor predictor(view);
+  RenderSettings settings = clustered(DistanceScaling::grow);
+  settings.width = 160;
+  settings.height = 90;
+  settings.recipe.d_init_m = 50;
+  const Prediction coarse = predictor.plan(settings);
+  ASSERT_EQ(coarse.stats.shadow_maps, 1u);
+  const double worst = predictor.expected_rmse(settings, coarse.plan);
+  ASSERT_GT(worst, 0.02);
+
+  uint64_t before = 25;
+  for (const float share : {0.0f, 0.3f, 0.6f, 2.0f}) {
+    const float most = share * static_cast<float>(worst);
+    const BudgetedPlan plan = choose_d_init(predictor, settings, {.max_error = most});
+    ASSERT_TRUE(plan.expected_rmse);
+    EXPECT_LE(*plan.expected_rmse, most);
+    EXPECT_LE(plan.prediction.stats.shadow_maps, before);
+    before = plan.prediction.stats.shadow_maps;
+  }
+  EXPECT_EQ(before, 1u);
+}
+
+TEST(Budget, OfMapsComesBeforeThatOfError) {
+  const pack::Contents pack = posts_on_a_floor();
+  const pack::View view = pack::view_of(pack);
+  Predictor predictor(view);
+  RenderSettings settings = clustered(DistanceScaling::grow);
+  settings.width = 160;
+  settings.height = 90;
+  const BudgetedPlan plan = choose_d_init(predictor, settings, {.max_shadow_maps = 4, .max_error = 1e-4f});
+  EXPECT_TRUE(plan.keeps_budget);
+  EXPECT_LE(plan.prediction.stats.shadow_maps, 4u);
+  ASSERT_TRUE(plan.expected_rmse);
+  EXPECT_GT(*plan.expected_rmse, 1e-3);
+  // An error that many maps keep is none that these few could not.
+  const BudgetedPlan easy = choose_d_init(predictor, settings, {.max_shadow_maps = 20, .max_error = 1.0f});
+  EXPECT_EQ(easy.prediction.stats.shadow_maps, 1u);
 }
 
 TEST(Prediction, CountsLightsMapsAndViews) {

@@ -182,6 +182,29 @@ class Prediction(SceneTest):
     def test_rooms(self):
         self.check_example("rooms")
 
+    def check_error(self, name, d_inits):
+        """The expected error grows with d_init as the measured one does, and is not far from it."""
+        pack = bake_example(name, self.folder)
+        measured, expected = [], []
+        for d_init in d_inits:
+            measured.append(compare(pack, "--d-init", d_init)["rmse"]["shown"])
+            expected.append(predict(pack, "--preset", "lightcluster", "--d-init", d_init)["expected_rmse_shown"])
+        print(name, "measured and expected RMSE:", measured, expected)
+        for i in range(len(d_inits)):
+            self.assertLess(abs(expected[i] - measured[i]), 0.02 + 0.5 * measured[i])
+            for k in range(i):
+                if abs(measured[i] - measured[k]) > 0.15 * max(measured[i], measured[k]):
+                    self.assertEqual(expected[i] > expected[k], measured[i] > measured[k], (name, d_inits[i], d_inits[k]))
+
+    def test_error_of_atrium(self):
+        self.check_error("atrium", (0.1, 0.3, 0.5, 1.6))
+
+    def test_error_of_cornell(self):
+        self.check_error("cornell", (0.1, 0.3, 0.6))
+
+    def test_error_of_restaurant(self):
+        self.check_error("restaurant", (0.1, 0.3, 0.5, 1.6))
+
     def test_sponza(self):
         pack = Sponza.bake(self)
         for options in (("--camera", "hall"), ("--camera", "gallery", "--preset", "lightcluster")):

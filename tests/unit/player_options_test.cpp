@@ -212,6 +212,9 @@ TEST(PlayerOptions, BudgetsChooseDInit) {
   EXPECT_EQ(options.budget.max_shadow_bytes, uint64_t{100} << 20);
   accepted("scene.chandelier --compare reference,lightcluster --report r --max-shadow-maps 24");
   expect_refused("scene.chandelier --output a.png --max-shadow-maps 24", "--max-shadow-maps: needs light clusters");
+  EXPECT_EQ(accepted("scene.chandelier --preset lightcluster --max-error 0.03").budget.max_error, 0.03f);
+  expect_refused("scene.chandelier --preset lightcluster --max-error 1.5", "--max-error: must be a number from 0 to 1");
+  expect_refused("scene.chandelier --max-error 0.1", "--max-error: needs light clusters");
   expect_refused("scene.chandelier --output a.png --preset lightcluster --d-init 1 --max-shadow-bytes 24",
                  "--max-shadow-bytes: cannot be used with --d-init");
   expect_refused("scene.chandelier --output a.png --preset lightcluster --max-shadow-maps 0", "--max-shadow-maps");
