@@ -142,7 +142,8 @@ class Evaluation:
         """Counters with visibility textures, drawn and predicted (section 5.3)."""
         options = ("--d-init", row["d_init_m"], "--deliver", "textures", *play.NO_REFERENCE_PATH)
         row["counters"] = player.draw("lightcluster", "counts", *options)["counters"]
-        row["predicted"] = player.predict("lightcluster", *options)["counters"]
+        prediction = player.predict("lightcluster", *options)
+        row |= {"predicted": prediction["counters"], "expected_rmse": prediction["expected_rmse_shown"]}
 
     def add_budgets(self, name, player):
         """d_init chosen for as many shadow maps as the paper drew."""

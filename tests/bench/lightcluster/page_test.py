@@ -39,6 +39,7 @@ def row(d_init_m, clusters, ratio, searched, changed):
     return {"d_init_m": d_init_m, "searched": searched, "clusters": clusters,
             "counters": counters(clusters, changed["visibility_mib"]),
             "predicted": counters(clusters, changed["visibility_mib"], changed["predicted_triangles"]),
+            "expected_rmse": changed["expected_rmse"][clusters],
             "error_driven": {"shadow_maps": changed["error_driven_maps"], "rmse": changed["error_driven_rmse"],
                              "select_ms": 3.0},
             "filters": {name: filters([900.0, 1000.0, 3000.0], [0.9 * ms, ms, 3 * ms]) for name in ("pcf", "pcss")}}
@@ -46,7 +47,7 @@ def row(d_init_m, clusters, ratio, searched, changed):
 
 def results(ratio_26=2.5, ratio_10=5.0, ms_2048=0.9, ms_100000=80.0, **changed):
     changed = {"visibility_mib": 40.0, "predicted_triangles": 1_010_000, "error_driven_maps": 6,
-               "error_driven_rmse": 0.0456} | changed
+               "error_driven_rmse": 0.0456, "expected_rmse": {80: 0.01, 44: 0.02, 26: 0.03, 10: 0.04}} | changed
     rows = [row(*values, changed) for values in
             ((0.1, 80, 0.9, None), (0.31, 44, 1.5, 44), (0.52, 26, ratio_26, 26), (1.7, 10, ratio_10, 10))]
     selection = [{"lights": n, "d_init_m": 0.5, "clusters": n // 3, "median_ms": ms, "brute_force_over_this": brute}
@@ -155,6 +156,12 @@ class Verdicts(unittest.TestCase):
         self.assertTrue(self.verdict("prediction").met)
         missed = self.verdict("prediction", predicted_triangles=900_000)
         self.assertEqual((missed.met, missed.ours, missed.missed_by), (False, "10.00 %", "100.0 %"))
+
+    def test_order_of_expected_errors(self):
+        rows = [{"expected_rmse": expected, "filters": {"pcss": {"rmse": measured}}}
+                for expected, measured in ((0.1, 0.01), (0.2, 0.03), (0.3, 0.02), (0.3, 0.04))]
+        self.assertEqual(verdicts.swapped_pairs(rows), [((0.3, 0.02), (0.2, 0.03))])
+        self.assertTrue(self.verdict("expected errors").met, "equal measured errors have no order")
 
     def test_what_was_not_measured_is_neither(self):
         empty = results() | {"scenes": {}, "selection": []}

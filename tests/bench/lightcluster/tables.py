@@ -134,9 +134,10 @@ def prediction_table(results):
     rows = []
     for name, _, row in named_rows(results):
         pairs = [f"{row['predicted'][c] / unit:,.0f} / {row['counters'][c] / unit:,.0f}" for c, unit in columns]
-        rows.append([name, *pairs, f"{100 * prediction_error(row):.2f} %"])
-    return Table(["scene", "shadow maps", "shadow triangles", "shadow maps, MiB", "visibility, MiB", "largest miss"], rows,
-                 "Predicted / counted")
+        errors = f"{row['expected_rmse']:.4f} / {row['filters']['pcss']['rmse']:.4f}"
+        rows.append([name, *pairs, f"{100 * prediction_error(row):.2f} %", errors])
+    return Table(["scene", "shadow maps", "shadow triangles", "shadow maps, MiB", "visibility, MiB", "largest miss", "RMSE"], rows,
+                 "Predicted / counted; RMSE expected / measured, PCSS")
 
 
 def path_table(results):

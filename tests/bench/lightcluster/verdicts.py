@@ -157,9 +157,25 @@ def prediction_verdict(results):
     return at_most(goal, PREDICTION_SHARE, max(errors), lambda v: f"{100 * v:.2f} %") if errors else not_measured(goal)
 
 
+def swapped_pairs(rows):
+    """Pairs of d_inits of which the one with more expected error has less measured error."""
+    errors = [(row["expected_rmse"], row["filters"]["pcss"]["rmse"]) for row in rows]
+    return [(a, b) for i, a in enumerate(errors) for b in errors[:i] if (a[0] - b[0]) * (a[1] - b[1]) < 0]
+
+
+def error_order_verdict(results):
+    goal = "expected errors in the order of the measured ones over d_init, on every scene"
+    scenes = results["scenes"].values()
+    if not scenes:
+        return not_measured(goal)
+    swapped = sum(len(swapped_pairs(made["rows"])) for made in scenes)
+    pairs = sum(len(made["rows"]) * (len(made["rows"]) - 1) // 2 for made in scenes)
+    return Verdict(goal, f"{swapped} of {pairs} pairs swapped", swapped == 0, f"{swapped} pairs")
+
+
 def verdicts(results):
     return [*selection_verdicts(results["selection"]), *ratio_verdicts(results), memory_verdict(results),
-            *map(error_driven_verdict, results["scenes"].values()), prediction_verdict(results)]
+            *map(error_driven_verdict, results["scenes"].values()), prediction_verdict(results), error_order_verdict(results)]
 
 
 def conditions(results):
