@@ -40,10 +40,10 @@ Blockers cascade_blockers(CascadeDisc disc, float search_m) {
 // The light's edge as a blocker at the part t of the way casts it on the plane lies R * (1 - t) / t from the centre's
 // (similar triangles). The search disc is where blockers half way cast it; wider penumbrae are cut off there. Where all
 // taps of the search are blocked, so are those of the narrower disc within, but for what lies between the taps.
-float cube_pcss(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
+float cube_pcss(ShadowMap map, vec3 p, vec3 n, mat2x3 axes) {
   float smoothing_m = SMOOTHING_TEXELS * texel_size(map, p);
   float search_m = max(smoothing_m, min(map.filter_radius_m, 0.5 * distance(p, map.center_ws)));
-  CubeDisc disc = cube_disc(map, p, n, pixel, search_m);
+  CubeDisc disc = cube_disc(map, p, n, axes, search_m);
   if (search_m == smoothing_m) return cube_pcf(disc, smoothing_m);
   Blockers found = cube_blockers(disc, search_m);
   if (found.count == 0u) return 1.0;
@@ -52,9 +52,9 @@ float cube_pcss(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
 }
 
 // A directional cluster's light stands at z_far. The search disc is what it casts from the cascade's near plane.
-float cascade_pcss(ShadowView cascade, float light_radius_m, vec3 p, vec3 n, vec2 pixel) {
+float cascade_pcss(ShadowView cascade, float light_radius_m, vec3 p, vec3 n, mat2x3 axes) {
   float smoothing_m = SMOOTHING_TEXELS * cascade.texel_m;
-  CascadeDisc disc = cascade_disc(cascade, p, n, pixel);
+  CascadeDisc disc = cascade_disc(cascade, p, n, axes);
   vec3 depth_per_m = vec3(cascade.clip_from_world[0].z, cascade.clip_from_world[1].z, cascade.clip_from_world[2].z);
   float spread_m = light_radius_m / (view.z_far_m * length(depth_per_m));  // over the whole depth
   float search_m = max(smoothing_m, spread_m * (1.0 - disc.receiver.z));
@@ -65,7 +65,7 @@ float cascade_pcss(ShadowView cascade, float light_radius_m, vec3 p, vec3 n, vec
   return cascade_pcf(disc, clamp(spread_m * found.mean, smoothing_m, search_m));
 }
 
-float pcss_visibility(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
-  if (map.is_directional != 0u) return cascade_pcss(views[cascade_at(map, p)], map.filter_radius_m, p, n, pixel);
-  return cube_pcss(map, p, n, pixel);
+float pcss_visibility(ShadowMap map, vec3 p, vec3 n, mat2x3 axes) {
+  if (map.is_directional != 0u) return cascade_pcss(views[cascade_at(map, p)], map.filter_radius_m, p, n, axes);
+  return cube_pcss(map, p, n, axes);
 }

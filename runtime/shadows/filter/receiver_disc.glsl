@@ -33,12 +33,11 @@ struct CubeDisc {
 
 // For taps up to radius_m from the receiver: they may fall on other faces than p does, at other slopes, which is why the
 // whole plane is moved by what the worst of them needs.
-CubeDisc cube_disc(ShadowMap map, vec3 p, vec3 n, vec2 pixel, float radius_m) {
+CubeDisc cube_disc(ShadowMap map, vec3 p, vec3 n, mat2x3 axes, float radius_m) {
   vec3 d = p - map.center_ws;
   float raise_m = RAISE_TEXELS * 2.0 / view.face_size_px * (largest(abs(d)) + radius_m);
   float across = along_major_axis(d, n, raise_m + 1.4142136 * radius_m);
   d += n * (raise_m * sqrt(max(0.0, 1.0 - across * across)));
-  mat2x3 axes = receiver_axes(n, pixel);
   return CubeDisc(d, axes, d * axes / dot(d, d), float(map.cube));
 }
 
@@ -63,11 +62,11 @@ struct CascadeDisc {
   float layer;
 };
 
-CascadeDisc cascade_disc(ShadowView cascade, vec3 p, vec3 n, vec2 pixel) {
+CascadeDisc cascade_disc(ShadowView cascade, vec3 p, vec3 n, mat2x3 axes) {
   mat4 clip_from_world = mat4(cascade.clip_from_world[0], cascade.clip_from_world[1], cascade.clip_from_world[2],
                               cascade.clip_from_world[3]);
   vec3 receiver = vec3(clip_from_world * vec4(p + n * (RAISE_TEXELS * cascade.texel_m), 1.0));
-  return CascadeDisc(receiver, mat3(clip_from_world) * receiver_axes(n, pixel), float(cascade.layer));
+  return CascadeDisc(receiver, mat3(clip_from_world) * axes, float(cascade.layer));
 }
 
 Tap cascade_tap(CascadeDisc disc, vec2 at_m) {

@@ -6,8 +6,8 @@
 
 const uint FILTER_HARD = 0u, FILTER_PCF = 1u, FILTER_PCSS = 2u;  // frame/recipe.h
 
-float visibility(ShadowMap map, vec3 p, vec3 n, vec2 pixel) {
-  if (filter_answer == FILTER_PCF) return pcf_visibility(map, p, n, pixel);
-  if (filter_answer == FILTER_PCSS) return pcss_visibility(map, p, n, pixel);
+float visibility(ShadowMap map, vec3 p, vec3 n, mat2x3 axes) {
+  if (filter_answer == FILTER_PCF) return pcf_visibility(map, p, n, axes);
+  if (filter_answer == FILTER_PCSS) return pcss_visibility(map, p, n, axes);
   return hard_visibility(map, p, n);
 }
