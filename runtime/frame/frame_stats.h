@@ -21,8 +21,8 @@ struct FrameStats {
   float exposure_ev = 0.0f;  // as used
   uint64_t lights = 0;
   uint64_t lights_in_view = 0;
-  uint64_t light_clusters = 0;    // equals lights_in_view where lights are not clustered
-  uint64_t reference_path = 0;    // 1: clusters were asked for, but are nearly as many as lights (LightCluster §5.4)
+  uint64_t light_clusters = 0;  // equals lights_in_view where lights are not clustered
+  uint64_t reference_path = 0;  // 1: clusters were asked for, but are nearly as many as lights (LightCluster §5.4)
   uint64_t shadow_maps = 0;
   uint64_t shadow_views = 0;
   uint64_t shadow_triangles = 0;

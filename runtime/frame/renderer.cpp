@@ -126,7 +126,10 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
   }
   if (plan.recipe.lookup == Lookup::tiles)
     make_tile_lists(device, settings.width, settings.height, plan.list.lights.size(), tiles);
-  if (visibility.size_bytes < visibility_bytes || by_rays == !visibility.mapped)
+  if (visibility_bytes > device.limits.maxStorageBufferRange)
+    throw gpu::Error("a picture of " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
+                     " pixels is too large for visibility textures on this device; use deliver inline");
+  if (!visibility.handle || visibility.size_bytes < visibility_bytes || by_rays == !visibility.mapped)
     visibility = gpu::make_buffer(device, visibility_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                   by_rays ? gpu::Memory::upload : gpu::Memory::device);
   if (store.face_size_px != settings.recipe.face_size_px || store.cube_count < cubes) {

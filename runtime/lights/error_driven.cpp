@@ -12,6 +12,14 @@ constexpr float fewest_rows = 36.0f, most_rows = 108.0f;
 constexpr uint32_t scatter_of_search = 1;
 constexpr double in_hand = 0.85;  // of the target: estimates of soft shadows may be too high (ERROR_SELECTION.md)
 
+constexpr double invisible_rmse = 5e-4;  // an eighth of what a byte of a channel holds
+
+uint32_t map_count(std::span<const MapMember> members) {
+  uint32_t maps = 0;
+  for (const MapMember& member : members) maps += member.light == member.center;
+  return maps;
+}
+
 }  // namespace
 
 SampleSettings sample_grid(size_t lights, const SampledView& view) {
@@ -44,7 +52,11 @@ std::vector<MapMember> ErrorDriven::select(std::span<const uint32_t> in_view, st
   }
   const Filter soft = recipe.filter == Filter::hard ? Filter::pcss : recipe.filter;
   const double target = estimated_rmse(*judge_, clusters, {soft, recipe.face_size_px});
-  return ladder_->within(in_hand * target, *judge_, {recipe.filter, recipe.face_size_px});
+  const double most = std::max(in_hand * target, invisible_rmse);
+  auto chosen = ladder_->within(most, *judge_, {recipe.filter, recipe.face_size_px});
+  // Estimates of soft filters have an error that more maps do not lower: then the clusters' number is the limit.
+  const uint32_t affordable = map_count(clusters);
+  return map_count(chosen) <= affordable ? chosen : ladder_->with_at_most(affordable);
 }
 
 double ErrorDriven::expected_rmse(std::span<const uint32_t> in_view, std::span<const MapMember> members,

@@ -249,7 +249,7 @@ void Search::exchange() {
       const uint32_t worst = cheapest_but(gains[i].second);
       better = worst != gains[i].second && drop(worst);
       settle();
-      better = better && error_ < 0.999 * before.error;
+      better = better && error_ < before.error - std::max(1e-3 * before.error, 1e-9);
       if (!better) restore(before);
     }
   }

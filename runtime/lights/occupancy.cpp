@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace chandelier::lights {
 namespace {
@@ -47,7 +48,8 @@ glm::dvec2 part_in_grid(const glm::ivec3& resolution, const glm::dvec3& a, const
 }  // namespace
 
 Occupancy::Occupancy(const pack::View& pack) {
-  if (pack.voxel_grid.empty()) return;
+  if (pack.voxel_grid.empty())
+    throw std::invalid_argument("walls voxels: the pack has none (chandelier-bake --voxels); use walls rays");
   const pack::VoxelGrid& grid = pack.voxel_grid[0];
   low_ws_ = glm::dvec3(grid.bounds_min_ws);
   cell_size_m_ = glm::dvec3(grid.cell_size_m);

@@ -28,18 +28,22 @@ bool wall_between(const rays::PackRays& rays, const glm::vec3& a_ws, const glm::
   return true;
 }
 
-bool Walls::find(WallTest test, uint32_t light, uint32_t other) const {
-  const glm::vec3 &a_ws = lights_[light].position_ws, &b_ws = lights_[other].position_ws;
+bool Walls::find(WallTest test, uint32_t light, uint32_t other) {
+  const glm::vec3 &a_ws = pack_.lights[light].position_ws, &b_ws = pack_.lights[other].position_ws;
   if (test == WallTest::none) return false;
-  return test == WallTest::voxels ? occupancy_.between(a_ws, b_ws) : wall_between(rays_, a_ws, b_ws);
+  if (test == WallTest::rays) return wall_between(rays_, a_ws, b_ws);
+  if (!occupancy_) occupancy_.emplace(pack_);
+  return occupancy_->between(a_ws, b_ws);
 }
 
 bool Walls::between(WallTest test, uint32_t light, uint32_t other) {
   if (light > other) std::swap(light, other);
-  if (lights_[light].dynamic || lights_[other].dynamic) return find(test, light, other);
-  const auto [known, is_new] = known_[static_cast<size_t>(test)].try_emplace(uint64_t{light} << 32 | other, false);
-  if (is_new) known->second = find(test, light, other);
-  return known->second;
+  if (pack_.lights[light].dynamic || pack_.lights[other].dynamic) return find(test, light, other);
+  auto& answers = known_[static_cast<size_t>(test)];
+  const uint64_t pair = uint64_t{light} << 32 | other;
+  const auto known = answers.find(pair);
+  if (known != answers.end()) return known->second;
+  return answers.emplace(pair, find(test, light, other)).first->second;
 }
 
 }  // namespace chandelier::lights

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 
@@ -21,17 +22,18 @@ bool wall_between(const rays::PackRays& rays, const glm::vec3& a_ws, const glm::
 class Walls {
  public:
   /// What they refer to must outlive it.
-  Walls(const pack::View& pack, const rays::PackRays& rays) : lights_(pack.lights), rays_(rays), occupancy_(pack) {}
+  Walls(const pack::View& pack, const rays::PackRays& rays) : pack_(pack), rays_(rays) {}
 
-  /// Neither may be directional. The same whichever comes first.
+  /// Neither may be directional. The same whichever comes first. Throws std::invalid_argument where a pack without
+  /// voxels is asked for them.
   bool between(WallTest test, uint32_t light, uint32_t other);
 
  private:
-  bool find(WallTest test, uint32_t light, uint32_t other) const;
+  bool find(WallTest test, uint32_t light, uint32_t other);
 
-  std::span<const pack::Light> lights_;
+  pack::View pack_;
   const rays::PackRays& rays_;
-  Occupancy occupancy_;
+  std::optional<Occupancy> occupancy_;           // made when first asked for
   std::unordered_map<uint64_t, bool> known_[3];  // by WallTest; a pair is one number, the lower light above
 };
 

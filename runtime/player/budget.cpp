@@ -25,6 +25,7 @@ std::string in_words(const std::vector<SharedMap>& shared) {
 
 void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budget) {
   const FrameStats& stats = plan.prediction.stats;
+  const bool is_limited = budget.max_shadow_maps || budget.max_shadow_bytes;
   if (!plan.keeps_budget)
     fmt::print(stderr, "chandelier-play: warning: {}: no d-init keeps the budget; {} shadow maps, {} bytes are left\n",
                named.preset, stats.shadow_maps, stats.shadow_bytes);
@@ -32,11 +33,10 @@ void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budg
     fmt::print(stderr, "{}: d-init {:.4g} m makes {} shadow maps, expected RMSE {:.4f}\n", named.preset, plan.d_init_m,
                stats.shadow_maps, *plan.expected_rmse);
   if (plan.expected_rmse && *plan.expected_rmse > double{*budget.max_error})
-    fmt::print(stderr,
-               "chandelier-play: warning: {}: --max-error {} is missed by {:.4f}; maps or bytes allow no less\n",
-               named.preset, *budget.max_error, *plan.expected_rmse - double{*budget.max_error});
-  const bool is_limited = budget.max_shadow_maps || budget.max_shadow_bytes;
-  if (plan.d_init_m == 0.0f || !is_limited || named.shared_maps->empty()) return;
+    fmt::print(stderr, "chandelier-play: warning: {}: --max-error {} is missed by {:.4f}; {}\n", named.preset,
+               *budget.max_error, *plan.expected_rmse - double{*budget.max_error},
+               is_limited ? "maps or bytes allow no less" : "no d-init makes less");
+  if (plan.d_init_m == 0.0f || !is_limited || !plan.keeps_budget || named.shared_maps->empty()) return;
   fmt::print(
       stderr,
       "{}: over budget with a shadow map for each of {} lights: d-init {:.4g} m makes {}; without their own: {}\n",

@@ -144,6 +144,11 @@ void read_path_mode(const Typed& typed, Options& options) {
   if (!typed.output.empty()) throw UsageError("--path: cannot be used with --output");
   if (!typed.stats.empty()) throw UsageError("--path: cannot be used with --stats; --report DIR gets path.json");
   if (!typed.camera.empty()) throw UsageError("--path: cannot be used with --camera; the path has the cameras");
+  if (typed.predict) throw UsageError("--path: cannot be used with --predict");
+  if (typed.max_shadow_maps || typed.max_shadow_bytes || typed.max_error)
+    throw UsageError(
+        "--path: cannot be used with --max-shadow-maps, --max-shadow-bytes or --max-error, which choose d-init "
+        "for one view");
   if (typed.frames && *typed.frames < 2)
     throw UsageError(fmt::format("--path: needs --frames of 2 or more ({})", *typed.frames));
   options.mode = Mode::path;

@@ -20,7 +20,8 @@ using Json = nlohmann::ordered_json;
 
 Json parse_file(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
+  if (!stream || std::filesystem::is_directory(file))
+    throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
   try {
     return Json::parse(stream);
   } catch (const Json::parse_error& error) {
@@ -98,7 +99,9 @@ std::vector<Camera> cameras_along(const std::vector<Camera>& keys, uint32_t fram
     const glm::vec3 forward = glm::mix(a.forward_ws, b.forward_ws, part);
     // Halfway between opposite directions there is none: stay with the nearer key.
     const glm::vec3 towards = glm::dot(forward, forward) > 1e-6f ? forward : (part < 0.5f ? a : b).forward_ws;
-    cameras.push_back(camera_looking_at(eye, eye + glm::normalize(towards), glm::mix(a.yfov_rad, b.yfov_rad, part)));
+    // Looking from the origin: far away a target one metre off would be rounded.
+    cameras.push_back(camera_looking_at({}, glm::normalize(towards), glm::mix(a.yfov_rad, b.yfov_rad, part)));
+    cameras.back().eye_ws = eye;
   }
   return cameras;
 }
@@ -119,13 +122,14 @@ CenterChanges center_changes(std::span<const uint32_t> before, std::span<const u
 
 void run_path(const Options& options, const gpu::Device& device, Renderer& renderer,
               const VisibilitySource& visibility) {
-  make_folder(options.report);
   const std::vector<Camera> cameras = read_path(options.path, options.frames.value_or(60));
+  make_folder(options.report);
   Run run{.pack = options.pack.filename().string(),
           .device = device.name,
           .driver = device.driver,
           .preset = options.recipes.front().preset,
-          .frames = 1};
+          .frames = 1,
+          .image = "last.png"};
   std::vector<PathStep> steps;
   std::vector<uint32_t> before;
   std::optional<float> exposure_ev = options.exposure_ev;
@@ -138,9 +142,12 @@ void run_path(const Options& options, const gpu::Device& device, Renderer& rende
     if (!exposure_ev) exposure_ev = run.stats.exposure_ev;  // or brightness would follow the view
     const CenterChanges changes = center_changes(before, run.stats.centers);
     PathStep step{run.stats.shadow_maps, run.stats.lights_in_view, changes.kept_in_view, changes.changed, 0.0};
-    if (changes.changed > 0) {
-      const Picture changed = renderer.read_back();
-      step.unexplained_rmse = rmse_shown(changed, without_changes(renderer, run.settings, before));
+    const bool is_last = steps.size() + 1 == cameras.size();
+    if (changes.changed > 0 || is_last) {
+      const Picture picture = renderer.read_back();
+      if (is_last) write_picture(options.report / run.image, picture);
+      if (changes.changed > 0)
+        step.unexplained_rmse = rmse_shown(picture, without_changes(renderer, run.settings, before));
     }
     steps.push_back(step);
     before = run.stats.centers;

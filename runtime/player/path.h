@@ -18,7 +18,7 @@ struct PathStep {
   uint64_t lights_kept_in_view = 0;  // of them, also a frame ago; 0 in the first frame
   uint64_t lights_changed = 0;       // of those, that took another light's map than a frame ago
   /// RMSE of the shown picture against the same view with every light at the centre of a frame ago: what the selection
-  /// changed and the camera's motion does not explain.
+  /// changed and the camera's motion does not explain. Lights that come into view or leave it change nothing here.
   double unexplained_rmse = 0.0;
 };
 
@@ -35,7 +35,7 @@ struct CenterChanges {
 };
 CenterChanges center_changes(std::span<const uint32_t> before, std::span<const uint32_t> after);
 
-/// Draws every step and writes path.json into the report's folder. Throws.
+/// Draws every step and writes path.json and last.png into the report's folder. Throws.
 void run_path(const Options& options, const gpu::Device& device, Renderer& renderer,
               const VisibilitySource& visibility);
 

@@ -28,14 +28,19 @@ std::vector<float> ladder(float farthest_m, const Effort& effort) {
   return values;
 }
 
-// Of the lights in view: the diagonal of the box around them.
-float farthest_apart_m(const LightList& list) {
+// Of the lights in view: the diagonal of the box around them. Directional lights stand z_far from wherever one is.
+float farthest_apart_m(const LightList& list, float z_far_m) {
   glm::vec3 low(INFINITY), high(-INFINITY);
+  float suns_m = 0.0f;
   for (const frame::FrameLight& light : list.lights) {
+    if (light.type == static_cast<uint32_t>(pack::LightType::directional)) {
+      suns_m = 2.0f * z_far_m;
+      continue;
+    }
     low = glm::min(low, light.position_ws);
     high = glm::max(high, light.position_ws);
   }
-  return list.lights.empty() ? 0.0f : glm::distance(low, high);
+  return std::max(suns_m, low.x <= high.x ? glm::distance(low, high) : 0.0f);
 }
 
 // Takes the first of `values` that is good, the last where none is, and from a good one goes on towards the bad one
@@ -66,7 +71,7 @@ BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const 
   };
   const auto rmse_at = [&](float d_init_m) { return predictor.expected_rmse(settings, plan_at(d_init_m).plan); };
 
-  const float farthest_m = farthest_apart_m(plan_at(0.0f).plan.list);
+  const float farthest_m = farthest_apart_m(plan_at(0.0f).plan.list, settings.recipe.z_far_m);
   BudgetedPlan best;
   if (budget.max_error) {
     std::vector<float> values = ladder(farthest_m, for_error);

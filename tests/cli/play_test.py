@@ -225,6 +225,55 @@ class Predict(PlayTest):
         self.assertGreater(told["counters"]["shadow_bytes"], 1 << 19)
 
 
+class Path(PlayTest):
+    """A camera walks through the Cornell box."""
+    KEYS = ["0.2,1,3.4,0,1,0,50", "-0.6,1.2,1.2,0.3,0.8,-1,50"]
+
+    def walk(self, *options):
+        (self.folder / "walk.json").write_text(json.dumps({"keys": self.KEYS}))
+        report = self.folder / "report"
+        self.play_well(self.pack, "--path", self.folder / "walk.json", "--report", report, "--frames", 12, *SMALL, *options)
+        found = json.loads((report / "path.json").read_text())
+        schema_validator("path.schema.json").validate(found)
+        self.assertEqual(png_size(report / "last.png"), (96, 54))
+        self.assertEqual(len(found["frames"]), 12)
+        return found
+
+    def test_stability_changes_fewer_lights_and_less_of_the_picture(self):
+        clusters = ["--preset", "lightcluster", "--d-init", 0.3, "--z-far", 10]
+        plain, stable = self.walk(*clusters), self.walk(*clusters, "--stability", 0.3)
+        print("lights that change a frame:", plain["mean"]["lights_changed"], "to", stable["mean"]["lights_changed"])
+        self.assertGreater(plain["mean"]["lights_changed"], 0)
+        self.assertLess(stable["mean"]["lights_changed"], plain["mean"]["lights_changed"])
+        self.assertLess(stable["mean"]["unexplained_rmse"], plain["mean"]["unexplained_rmse"])
+
+    def test_the_reference_changes_nothing(self):
+        found = self.walk("--preset", "reference")
+        self.assertEqual(found["mean"]["lights_changed"], 0)
+        self.assertEqual(found["mean"]["unexplained_rmse"], 0)
+        self.assertEqual(found["frames"][3]["lights_kept_in_view"], LIGHTS)
+
+    def test_a_bad_path_is_told_in_one_line(self):
+        for text, what in (("{", "not JSON"), ("[]", "keys"), ('{"keys": ["0,0,0,0,0,1,50"]}', "two cameras"),
+                           ('{"keys": ["0,0,0,0,0,1,50", 3]}', "keys: 1: must be"), ('{"keys": ["a", "b"]}', '"a"')):
+            (self.folder / "bad.json").write_text(text)
+            done = self.play(self.pack, "--path", self.folder / "bad.json", "--report", self.folder / "report")
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
+            self.assertIn("bad.json", done.stderr)
+            self.assertIn(what, done.stderr)
+        for path in (self.folder, self.folder / "none.json"):
+            done = self.play(self.pack, "--path", path, "--report", self.folder / "report")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{path}: cannot be read", done.stderr)
+        self.assertFalse((self.folder / "report").exists())
+
+    def test_what_does_not_go_with_a_path_is_refused(self):
+        for options in (["--predict"], ["--output", "x.png"], ["--camera", "front"], ["--max-shadow-maps", 3], ["--frames", 1]):
+            done = self.play(self.pack, "--path", "walk.json", "--report", "report", *options)
+            self.assertEqual(done.returncode, 2, options)
+            self.assertIn("--path", done.stderr)
+
+
 class BadInput(PlayTest):
     def bad_pack(self, content):
         path = self.folder / "bad.chandelier"

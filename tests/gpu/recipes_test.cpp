@@ -209,6 +209,22 @@ TEST_F(RecipesTest, VisibilityTexturesGiveThePictureOfInlineVisibility) {
   }
 }
 
+// A light beside and behind the camera passes the planes of the frustum and yet reaches no pixel: no byte is needed.
+TEST_F(RecipesTest, VisibilityTexturesMayAllBeEmpty) {
+  Scene scene = small_room(0);
+  scene.lights = {point_light({0.5f, 1, 1}, 50, 1.08f)};
+  const pack::File pack = scene.open();
+  Renderer renderer(device(), pack);
+  RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::pcf, 0));
+  settings.camera = look({0, 1, 0}, {0, 1, -1}, 0.5f * pi);
+  settings.width = settings.height = 64;
+  settings.recipe.deliver = Deliver::textures;
+  const Frame empty = frame(renderer, settings);
+  EXPECT_EQ(empty.stats.shadow_maps, 1u);
+  EXPECT_EQ(empty.stats.visibility_bytes, 0u);
+  EXPECT_EQ(brightness(empty.picture), 0.0);
+}
+
 // What is asked are the points that the camera sees, and the answer is what shading uses.
 TEST_F(RecipesTest, RaysAreAskedAboutEveryVisiblePoint) {
   Scene scene;

@@ -268,6 +268,34 @@ TEST(ErrorDrivenTest, ListsEveryLightInViewOnceUnderAsFewMapsAsItsErrorAllows) {
   EXPECT_THROW(select_lights(s.pack.view().lights, recipe, from_above(), 1.0f), std::invalid_argument);
 }
 
+// Where nothing casts a shadow every sharing is right: as many maps as light clusters would be too many.
+TEST(ErrorDrivenTest, NothingThatCastsNeedsNoMaps) {
+  test::Scene scene;
+  scene.add(test::level_square(glm::vec3(0), 4), scene.add_material(test::plain_material(glm::vec3(0.8f))));
+  for (int i = 0; i < 12; ++i)
+    scene.lights.push_back(test::point_light({0.3f * static_cast<float>(i) - 2.0f, 1.5f, 0.0f}, 2, 20));
+  const pack::File pack = scene.open();
+  Surroundings surroundings(pack.view());
+  Recipe recipe;
+  recipe.select = Select::error_driven;
+  recipe.d_init_m = 0.5f;
+  for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
+    for (const uint32_t face_size_px : {16u, 512u}) {
+      recipe.filter = filter;
+      recipe.face_size_px = face_size_px;
+      Recipe clusters = recipe;
+      clusters.select = Select::light_clusters;
+      const auto& lights = pack.view().lights;
+      const SelectAids aids{.surroundings = &surroundings};
+      const size_t by_error = select_lights(lights, recipe, from_above(), 1.0f, aids).maps.size();
+      EXPECT_LE(by_error, select_lights(lights, clusters, from_above(), 1.0f, aids).maps.size());
+      if (filter == Filter::hard) {
+        EXPECT_EQ(by_error, 1u);
+      }
+    }
+  }
+}
+
 TEST(ShownCurveTest, TableAndFormulaAgree) {
   const ShownCurve table;
   for (float x = 0.0f; x < 40.0f; x = x * 1.01f + 1e-4f) EXPECT_NEAR(table(x), shown(x), 3e-4f) << x;
