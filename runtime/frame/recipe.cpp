@@ -88,7 +88,7 @@ const std::array preset_list{
     Preset{"lightcluster", "one shadow map per light cluster, read by PCSS (LightCluster)",
            lightcluster_recipe(Filter::pcss)},
     Preset{"lightcluster-pcf", "the same, read by PCF", lightcluster_recipe(Filter::pcf)},
-    Preset{"chandelier", "as few shadow maps as look no worse than light clusters, by the error that they make",
+    Preset{"chandelier", "as few shadow maps as are expected to err no more than light clusters do",
            chandelier_recipe()},
     Preset{"truth", "rays from every visible point to every light, on the CPU: what shadow maps are measured against",
            truth_recipe()},

@@ -41,7 +41,7 @@ std::vector<std::string> strings(std::span<const std::string_view> views) {
 
 std::string footer() {
   std::string text = "Presets:\n";
-  for (const Preset& preset : presets()) text += fmt::format("  {:<14}{}\n", preset.name, preset.description);
+  for (const Preset& preset : presets()) text += fmt::format("  {:<18}{}\n", preset.name, preset.description);
   text +=
       "\nExamples:\n"
       "  chandelier-play scene.chandelier                       fly through it in a window\n"

@@ -129,13 +129,18 @@ pack::Contents posts_on_a_floor() {
   return baker::bake(std::move(scene), {}, baker::Progress(false), report, warnings);
 }
 
+RenderSettings small_picture() {
+  RenderSettings settings = clustered(DistanceScaling::grow);
+  settings.width = 160;
+  settings.height = 90;
+  return settings;
+}
+
 TEST(Budget, OfErrorIsKeptByAsFewMapsAsDo) {
   const pack::Contents pack = posts_on_a_floor();
   const pack::View view = pack::view_of(pack);
   Predictor predictor(view);
-  RenderSettings settings = clustered(DistanceScaling::grow);
-  settings.width = 160;
-  settings.height = 90;
+  RenderSettings settings = small_picture();
   settings.recipe.d_init_m = 50;
   const Prediction coarse = predictor.plan(settings);
   ASSERT_EQ(coarse.stats.shadow_maps, 1u);
@@ -158,9 +163,7 @@ TEST(Budget, OfMapsComesBeforeThatOfError) {
   const pack::Contents pack = posts_on_a_floor();
   const pack::View view = pack::view_of(pack);
   Predictor predictor(view);
-  RenderSettings settings = clustered(DistanceScaling::grow);
-  settings.width = 160;
-  settings.height = 90;
+  RenderSettings settings = small_picture();
   const BudgetedPlan plan = choose_d_init(predictor, settings, {.max_shadow_maps = 4, .max_error = 1e-4f});
   EXPECT_TRUE(plan.keeps_budget);
   EXPECT_LE(plan.prediction.stats.shadow_maps, 4u);
