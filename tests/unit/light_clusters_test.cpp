@@ -9,28 +9,17 @@
 #include <numeric>
 #include <random>
 
+#include "ring_lights.h"
+
 namespace chandelier::lights {
 namespace {
-
-// Ten circles of eight lights, as the paper's atrium has them (Table 1).
-std::vector<ClusterLight> atrium() {
-  std::vector<ClusterLight> lights;
-  for (const float z : {-4.5f, 4.5f}) {
-    for (const float x : {-10.0f, -5.0f, 0.0f, 5.0f, 10.0f}) {
-      for (int i = 0; i < 8; ++i) {
-        const float angle = 2.0f * 3.14159265f * static_cast<float>(i) / 8.0f;
-        lights.push_back({{x + 0.44f * std::cos(angle), 2.5f, z + 0.44f * std::sin(angle)}, 7.0f});
-      }
-    }
-  }
-  return lights;
-}
 
 TEST(LightClustersTest, PaperTable1) {
   const std::pair<float, size_t> rows[]{{0.0f, 80}, {0.1f, 80}, {0.3f, 44}, {0.5f, 26}, {1.6f, 10}};
   for (const auto& [d_init_m, count] : rows) {
     const auto result = select_light_clusters(
-        atrium(), {.camera_ws = {-11, 2, 2}, .d_init_m = d_init_m, .z_far_m = 30.0f, .scaling = DistanceScaling::grow});
+        ring_lights(),
+        {.camera_ws = {-11, 2, 2}, .d_init_m = d_init_m, .z_far_m = 30.0f, .scaling = DistanceScaling::grow});
     EXPECT_EQ(result.clusters.size(), count) << "d_init " << d_init_m;
   }
 }

@@ -5,21 +5,14 @@
 #include <cmath>
 
 #include "lights/light_clusters.h"
+#include "ring_lights.h"
 
 namespace chandelier::lights {
 namespace {
 
 // Two arcades of lamps on rings, as in the paper's atrium, and a row of brighter lamps between them.
 std::vector<ClusterLight> hall() {
-  std::vector<ClusterLight> lights;
-  for (const float z : {-4.5f, 4.5f}) {
-    for (const float x : {-10.0f, -5.0f, 0.0f, 5.0f, 10.0f}) {
-      for (int i = 0; i < 8; ++i) {
-        const float angle = 2.0f * 3.14159265f * static_cast<float>(i) / 8.0f;
-        lights.push_back({{x + 0.44f * std::cos(angle), 2.5f, z + 0.44f * std::sin(angle)}, 7.0f});
-      }
-    }
-  }
+  std::vector<ClusterLight> lights = ring_lights();
   for (int i = 0; i < 24; ++i) {
     const auto at = static_cast<float>(i);
     lights.push_back({{at - 12.0f, 4.0f + 0.3f * std::sin(at), std::cos(2.0f * at)}, 8.0f + std::sin(3.0f * at)});
