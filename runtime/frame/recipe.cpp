@@ -136,6 +136,7 @@ std::optional<std::string> refusal(const Recipe& recipe) {
   if (!std::isfinite(recipe.z_far_m) || recipe.z_far_m <= 0.0f) return "z-far must be a distance above 0 m";
   if (!(recipe.reference_share > 0.0f)) return "reference-share must be above 0";
   if (!(recipe.stability >= 0.0f && recipe.stability < 1.0f)) return "stability must be from 0 to below 1";
+  if (recipe.max_rmse && !(*recipe.max_rmse >= 0.0f)) return "max-error must be 0 or more";
   if (recipe.face_size_px < 16 || recipe.face_size_px > 16384) return "face-size must be from 16 to 16384 texels";
   if (clustered && recipe.filter == Filter::hard && recipe.d_init_m > 0.0f)
     return "select light-clusters with filter hard: lights that share a map need a soft filter (LightCluster §3.2.1); "

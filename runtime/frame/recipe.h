@@ -50,7 +50,9 @@ struct Recipe {
   WallTest walls = WallTest::none;
   float stability = 0.0f;         // 0 to below 1: how much lights cling to RenderSettings::previous_centers
   float reference_share = 0.85f;  // as many clusters per light in view: the reference is drawn instead; above 1: never
-  uint32_t face_size_px = 512;    // width of one face of a cube
+  std::optional<uint32_t> max_maps;  // error-driven: as little error as so many maps allow, whatever d_init says
+  std::optional<float> max_rmse;     // error-driven: as few maps as keep so much error of the shown picture
+  uint32_t face_size_px = 512;       // width of one face of a cube
   uint64_t shadow_budget_bytes = uint64_t{1024} << 20;  // depth kept at a time; more maps are drawn in further rounds
 };
 

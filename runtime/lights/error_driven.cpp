@@ -39,24 +39,32 @@ void ErrorDriven::look(std::span<const uint32_t> in_view, const SampledView& vie
   judge_.emplace(scene_, in_view_, view.camera, view.aspect, sample_grid(in_view.size(), view));
 }
 
+void ErrorDriven::climb(const SampledView& view, lights::DynamicLights dynamic_lights) {
+  if (ladder_ && dynamic_lights_ == dynamic_lights) return;
+  ladder_.reset();
+  dynamic_lights_ = dynamic_lights;
+  SampleSettings settings = sample_grid(in_view_.size(), view);
+  settings.scatter = scatter_of_search;
+  samples_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
+  ladder_.emplace(*samples_, dynamic_lights);
+}
+
+// Estimates of soft filters have an error that more maps do not lower: the number of maps limits it.
+std::vector<MapMember> ErrorDriven::within(double most_rmse, uint32_t most_maps, const Recipe& recipe) const {
+  auto chosen = ladder_->within(most_rmse, *judge_, {recipe.filter, recipe.face_size_px});
+  return map_count(chosen) <= most_maps ? chosen : ladder_->with_at_most(most_maps);
+}
+
 std::vector<MapMember> ErrorDriven::select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
                                            const SampledView& view, const Recipe& recipe) {
   look(in_view, view);
-  if (!ladder_ || dynamic_lights_ != recipe.dynamic_lights) {
-    ladder_.reset();
-    dynamic_lights_ = recipe.dynamic_lights;
-    SampleSettings settings = sample_grid(in_view.size(), view);
-    settings.scatter = scatter_of_search;
-    samples_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
-    ladder_.emplace(*samples_, recipe.dynamic_lights);
-  }
+  climb(view, recipe.dynamic_lights);
+  const uint32_t most_maps = recipe.max_maps.value_or(UINT32_MAX);
+  if (recipe.max_rmse) return within(*recipe.max_rmse, most_maps, recipe);
+  if (recipe.max_maps) return ladder_->with_at_most(most_maps);
   const Filter soft = recipe.filter == Filter::hard ? Filter::pcss : recipe.filter;
   const double target = estimated_rmse(*judge_, clusters, {soft, recipe.face_size_px});
-  const double most = std::max(in_hand * target, invisible_rmse);
-  auto chosen = ladder_->within(most, *judge_, {recipe.filter, recipe.face_size_px});
-  // Estimates of soft filters have an error that more maps do not lower: then the clusters' number is the limit.
-  const uint32_t affordable = map_count(clusters);
-  return map_count(chosen) <= affordable ? chosen : ladder_->with_at_most(affordable);
+  return within(std::max(in_hand * target, invisible_rmse), map_count(clusters), recipe);
 }
 
 double ErrorDriven::expected_rmse(std::span<const uint32_t> in_view, std::span<const MapMember> members,

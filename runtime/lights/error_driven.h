@@ -32,9 +32,10 @@ class ErrorDriven {
   /// What `pack` points to, and `rays` through it, must outlive this.
   ErrorDriven(const pack::View& pack, const rays::PackRays& rays) : scene_(pack, rays) {}
 
-  /// The fewest shadow maps whose expected error, read by `recipe.filter`, is surely no more than that of `clusters`.
-  /// Those need a soft filter: theirs is PCSS where the recipe says hard. All numbers of lights in `clusters` and in
-  /// the answer are indices into `in_view`, numbers in the pack in ascending order.
+  /// With limits in the recipe the best that keeps them, maps before error; `clusters` are not asked then. Without, the
+  /// fewest shadow maps whose expected error, read by `recipe.filter`, is surely no more than that of `clusters`. Those
+  /// need a soft filter: theirs is PCSS where the recipe says hard. All numbers of lights in `clusters` and in the
+  /// answer are indices into `in_view`, numbers in the pack in ascending order.
   std::vector<MapMember> select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
                                 const SampledView& view, const Recipe& recipe);
   /// estimated_rmse() of `members`, read by `recipe.filter`; numbers as above.
@@ -43,6 +44,8 @@ class ErrorDriven {
 
  private:
   void look(std::span<const uint32_t> in_view, const SampledView& view);
+  void climb(const SampledView& view, lights::DynamicLights dynamic_lights);
+  std::vector<MapMember> within(double most_rmse, uint32_t most_maps, const Recipe& recipe) const;
 
   SampledScene scene_;
   std::vector<uint32_t> in_view_;

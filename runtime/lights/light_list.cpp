@@ -221,7 +221,9 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
   one_each(aids.previous_centers, "previous centres");
   one_each(aids.centers, "centres");
   const auto in_view = lights_in_view(lights, camera, aspect);
+  const bool has_limits = recipe.select == Select::error_driven && (recipe.max_maps || recipe.max_rmse);
   std::vector<Member> members = recipe.select == Select::per_light ? one_map_each(lights, in_view)
+                                : has_limits                       ? std::vector<Member>()
                                                                    : clustered(lights, in_view, recipe, camera, aids);
   if (recipe.select == Select::error_driven)
     members = members_by_error(lights, in_view, std::move(members), recipe,

@@ -25,22 +25,25 @@ std::string in_words(const std::vector<SharedMap>& shared) {
 
 void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budget) {
   const FrameStats& stats = plan.prediction.stats;
+  const bool by_error = named.recipe.select == Select::error_driven;
+  const std::string how = by_error ? "selection by error" : fmt::format("d-init {:.4g} m", named.recipe.d_init_m);
   const bool is_limited = budget.max_shadow_maps || budget.max_shadow_bytes;
   if (!plan.keeps_budget)
-    fmt::print(stderr, "chandelier-play: warning: {}: no d-init keeps the budget; {} shadow maps, {} bytes are left\n",
-               named.preset, stats.shadow_maps, stats.shadow_bytes);
+    fmt::print(stderr, "chandelier-play: warning: {}: no {} keeps the budget; {} shadow maps, {} bytes are left\n",
+               named.preset, by_error ? "selection" : "d-init", stats.shadow_maps, stats.shadow_bytes);
   if (plan.expected_rmse)
-    fmt::print(stderr, "{}: d-init {:.4g} m makes {} shadow maps, expected RMSE {:.4f}\n", named.preset, plan.d_init_m,
-               stats.shadow_maps, *plan.expected_rmse);
+    fmt::print(stderr, "{}: {} makes {} shadow maps, expected RMSE {:.4f}\n", named.preset, how, stats.shadow_maps,
+               *plan.expected_rmse);
   if (plan.expected_rmse && *plan.expected_rmse > double{*budget.max_error})
     fmt::print(stderr, "chandelier-play: warning: {}: --max-error {} is missed by {:.4f}; {}\n", named.preset,
                *budget.max_error, *plan.expected_rmse - double{*budget.max_error},
-               is_limited ? "maps or bytes allow no less" : "no d-init makes less");
-  if (plan.d_init_m == 0.0f || !is_limited || !plan.keeps_budget || named.shared_maps->empty()) return;
-  fmt::print(
-      stderr,
-      "{}: over budget with a shadow map for each of {} lights: d-init {:.4g} m makes {}; without their own: {}\n",
-      named.preset, stats.lights_in_view, plan.d_init_m, stats.shadow_maps, in_words(*named.shared_maps));
+               is_limited ? "maps or bytes allow no less"
+               : by_error ? "more maps make no less"
+                          : "no d-init makes less");
+  const bool is_whole = !by_error && named.recipe.d_init_m == 0.0f;
+  if (is_whole || !is_limited || !plan.keeps_budget || named.shared_maps->empty()) return;
+  fmt::print(stderr, "{}: over budget with a shadow map for each of {} lights: {} makes {}; without their own: {}\n",
+             named.preset, stats.lights_in_view, how, stats.shadow_maps, in_words(*named.shared_maps));
 }
 
 }  // namespace
@@ -59,8 +62,8 @@ void apply_budget(Options& options, const NamedCamera& camera, const pack::File&
   for (NamedRecipe& named : options.recipes) {
     if (named.recipe.select == Select::per_light) continue;
     const BudgetedPlan plan =
-        choose_d_init(predictor, render_settings(options, named.recipe, camera.camera, {}), options.budget);
-    named.recipe.d_init_m = plan.d_init_m;
+        keep_budget(predictor, render_settings(options, named.recipe, camera.camera, {}), options.budget);
+    named.recipe = plan.recipe;
     named.shared_maps = shared_maps(pack, plan.prediction.plan.list);
     named.expected_rmse = plan.expected_rmse;
     tell(named, plan, options.budget);

@@ -19,8 +19,8 @@ enum class Mode { list_devices, headless, compare, path, predict, window };
 struct NamedRecipe {
   std::string preset;
   Recipe recipe;                                      // the preset's, with every explicit setting applied
-  std::optional<std::vector<SharedMap>> shared_maps;  // where a budget chose d_init
-  std::optional<double> expected_rmse;                // where an error did
+  std::optional<std::vector<SharedMap>> shared_maps;  // where a budget is given
+  std::optional<double> expected_rmse;                // where that is one of error
 };
 
 struct Options {
@@ -31,7 +31,7 @@ struct Options {
   std::filesystem::path report;      // Mode::compare and Mode::path: a folder
   std::filesystem::path path;        // Mode::path: the camera's
   std::vector<NamedRecipe> recipes;  // two in Mode::compare, else one
-  Budget budget;                     // chooses d_init of recipes with light clusters
+  Budget budget;                     // of recipes whose lights share maps
   uint32_t width = 1280;
   uint32_t height = 720;
   std::string camera_name;         // empty: the pack's first

@@ -64,6 +64,8 @@ Json recipe_json(const Recipe& recipe) {
                       {"reference_share", recipe.reference_share},
                       {"face_size_px", recipe.face_size_px},
                       {"shadow_budget_bytes", recipe.shadow_budget_bytes}};
+  if (recipe.max_maps) json["settings"]["max_maps"] = *recipe.max_maps;
+  if (recipe.max_rmse) json["settings"]["max_rmse"] = *recipe.max_rmse;
   return json;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "shadows/store/cube_array.h"
+
 namespace chandelier {
 namespace {
 
@@ -58,6 +60,25 @@ float first_good(const std::vector<float>& values, int halvings, IsGood is_good)
   return good;
 }
 
+bool fits(const FrameStats& stats, const Budget& budget) {
+  return stats.shadow_maps <= budget.max_shadow_maps.value_or(UINT64_MAX) &&
+         stats.shadow_bytes <= budget.max_shadow_bytes.value_or(UINT64_MAX);
+}
+
+// The budget itself is the recipe's.
+BudgetedPlan keep_by_error(Predictor& predictor, RenderSettings settings, const Budget& budget) {
+  uint64_t maps = budget.max_shadow_maps.value_or(UINT32_MAX);
+  if (budget.max_shadow_bytes)
+    maps = std::min(maps, *budget.max_shadow_bytes / cube_bytes(settings.recipe.face_size_px));
+  if (budget.max_shadow_maps || budget.max_shadow_bytes)
+    settings.recipe.max_maps = static_cast<uint32_t>(std::min<uint64_t>(maps, UINT32_MAX));
+  settings.recipe.max_rmse = budget.max_error;
+  BudgetedPlan kept{.recipe = settings.recipe, .prediction = predictor.plan(settings)};
+  kept.keeps_budget = fits(kept.prediction.stats, budget);
+  if (budget.max_error) kept.expected_rmse = predictor.expected_rmse(settings, kept.prediction.plan);
+  return kept;
+}
+
 }  // namespace
 
 BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const Budget& budget) {
@@ -65,27 +86,29 @@ BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const 
     settings.recipe.d_init_m = d_init_m;
     return predictor.plan(settings);
   };
-  const auto fits = [&](const FrameStats& stats) {
-    return stats.shadow_maps <= budget.max_shadow_maps.value_or(UINT64_MAX) &&
-           stats.shadow_bytes <= budget.max_shadow_bytes.value_or(UINT64_MAX);
-  };
   const auto rmse_at = [&](float d_init_m) { return predictor.expected_rmse(settings, plan_at(d_init_m).plan); };
 
   const float farthest_m = farthest_apart_m(plan_at(0.0f).plan.list, settings.recipe.z_far_m);
-  BudgetedPlan best;
+  float d_init_m = 0.0f;
   if (budget.max_error) {
     std::vector<float> values = ladder(farthest_m, for_error);
     std::reverse(values.begin(), values.end());
-    best.d_init_m = first_good(values, for_error.halvings,
-                               [&](float d_init_m) { return rmse_at(d_init_m) <= double{*budget.max_error}; });
+    d_init_m = first_good(values, for_error.halvings,
+                          [&](float tried_m) { return rmse_at(tried_m) <= double{*budget.max_error}; });
   }
-  if (!fits(plan_at(best.d_init_m).stats))
-    best.d_init_m = first_good(ladder(farthest_m, for_maps), for_maps.halvings,
-                               [&](float d_init_m) { return fits(plan_at(d_init_m).stats); });
-  best.prediction = plan_at(best.d_init_m);
-  best.keeps_budget = fits(best.prediction.stats);
-  if (budget.max_error) best.expected_rmse = rmse_at(best.d_init_m);
+  if (!fits(plan_at(d_init_m).stats, budget))
+    d_init_m = first_good(ladder(farthest_m, for_maps), for_maps.halvings,
+                          [&](float tried_m) { return fits(plan_at(tried_m).stats, budget); });
+  BudgetedPlan best{.prediction = plan_at(d_init_m)};
+  best.recipe = settings.recipe;
+  best.keeps_budget = fits(best.prediction.stats, budget);
+  if (budget.max_error) best.expected_rmse = rmse_at(d_init_m);
   return best;
+}
+
+BudgetedPlan keep_budget(Predictor& predictor, const RenderSettings& settings, const Budget& budget) {
+  return settings.recipe.select == Select::error_driven ? keep_by_error(predictor, settings, budget)
+                                                        : choose_d_init(predictor, settings, budget);
 }
 
 }  // namespace chandelier

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a budget to the d_init that keeps it.
+// From a budget to the recipe that keeps it.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,19 @@ struct Budget {
 };
 
 struct BudgetedPlan {
-  float d_init_m = 0.0f;
-  bool keeps_budget = true;             // false where even the largest d_init makes too many maps
+  Recipe recipe;             // as asked for, but d_init_m, or max_maps and max_rmse of error-driven selection
+  bool keeps_budget = true;  // false where even the fewest maps that can be are too many
   std::optional<double> expected_rmse;  // where max_error is given: above it where maps or bytes do not allow less
-  Prediction prediction;                // with that d_init; draws and triangles are 0
+  Prediction prediction;                // of that recipe; draws and triangles are 0
 };
 
 /// With max_error the largest d_init, which is the fewest maps, that is expected to keep it; where that is more than
 /// the budget of maps and bytes, or without max_error, the smallest d_init that keeps these. README.md of this folder
 /// says how it is looked for.
 BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const Budget& budget);
+
+/// The same for any recipe: error-driven selection needs no d_init, but is told the budget, which it keeps in every
+/// view.
+BudgetedPlan keep_budget(Predictor& predictor, const RenderSettings& settings, const Budget& budget);
 
 }  // namespace chandelier

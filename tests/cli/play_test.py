@@ -219,6 +219,19 @@ class Predict(PlayTest):
         drawn = self.stats("--preset", "lightcluster", "--max-error", 0.05)
         self.assertLessEqual(drawn["expected_rmse_shown"], 0.05)
 
+    def test_selection_by_error_keeps_budgets_itself(self):
+        told, done = self.predict("--preset", "chandelier", "--max-shadow-maps", 9)
+        self.assertLessEqual(told["counters"]["shadow_maps"], 9)
+        self.assertEqual(told["recipe"]["settings"]["max_maps"], 9)
+        self.assertRegex(done.stderr, r"\Achandelier: over budget [^\n]* selection by error makes \d; [^\n]* and \d+ more\n\Z")
+        drawn = self.stats("--preset", "chandelier", "--max-shadow-maps", 9)
+        self.assertEqual((drawn["recipe"], drawn["lights_without_own_map"]), (told["recipe"], told["lights_without_own_map"]))
+        clusters, _ = self.predict("--preset", "lightcluster", "--max-shadow-maps", 9)
+        self.assertLess(told["expected_rmse_shown"], 0.6 * clusters["expected_rmse_shown"])
+        within, _ = self.predict("--preset", "chandelier", "--max-error", 0.05)
+        self.assertLessEqual(within["expected_rmse_shown"], 0.05)
+        self.assertLess(within["counters"]["shadow_maps"], 9)
+
     def test_bytes_are_a_budget_too(self):
         told, _ = self.predict("--preset", "lightcluster", "--max-shadow-bytes", 1)
         self.assertLessEqual(told["counters"]["shadow_bytes"], 1 << 20)

@@ -57,9 +57,9 @@ TEST(Budget, IsKeptByAsManyMapsAsItAllows) {
       }
       // A little smaller, it makes too many.
       RenderSettings smaller = settings;
-      smaller.recipe.d_init_m = plan.d_init_m * 0.995f;
+      smaller.recipe.d_init_m = plan.recipe.d_init_m * 0.995f;
       EXPECT_GT(predictor.plan(smaller).stats.shadow_maps, most);
-      smaller.recipe.d_init_m = plan.d_init_m;
+      smaller.recipe.d_init_m = plan.recipe.d_init_m;
       EXPECT_EQ(predictor.plan(smaller).stats.shadow_maps, before);
     }
   }
@@ -70,7 +70,7 @@ TEST(Budget, LeavesLightsAloneThatItHolds) {
   const pack::View view = pack::view_of(pack);
   Predictor predictor(view);
   const BudgetedPlan plan = choose_d_init(predictor, clustered(DistanceScaling::grow), {.max_shadow_maps = 30});
-  EXPECT_EQ(plan.d_init_m, 0.0f);
+  EXPECT_EQ(plan.recipe.d_init_m, 0.0f);
   EXPECT_TRUE(plan.keeps_budget);
   EXPECT_EQ(plan.prediction.plan.list.center, plan.prediction.plan.list.pack_light);
 }
@@ -84,7 +84,7 @@ TEST(Budget, OfBytesIsThatOfMaps) {
   const BudgetedPlan bytes = choose_d_init(predictor, settings, {.max_shadow_bytes = uint64_t{16} << 20});
   const BudgetedPlan maps = choose_d_init(predictor, settings, {.max_shadow_maps = 10});
   EXPECT_LE(bytes.prediction.stats.shadow_bytes, uint64_t{16} << 20);
-  EXPECT_EQ(bytes.d_init_m, maps.d_init_m);
+  EXPECT_EQ(bytes.recipe.d_init_m, maps.recipe.d_init_m);
   const BudgetedPlan both =
       choose_d_init(predictor, settings, {.max_shadow_maps = 4, .max_shadow_bytes = uint64_t{16} << 20});
   EXPECT_LE(both.prediction.stats.shadow_maps, 4u);
@@ -172,6 +172,36 @@ TEST(Budget, OfMapsComesBeforeThatOfError) {
   // An error that many maps keep is none that these few could not.
   const BudgetedPlan easy = choose_d_init(predictor, settings, {.max_shadow_maps = 20, .max_error = 1.0f});
   EXPECT_EQ(easy.prediction.stats.shadow_maps, 1u);
+}
+
+TEST(Budget, IsWhatSelectionByErrorKeeps) {
+  const pack::Contents pack = posts_on_a_floor();
+  const pack::View view = pack::view_of(pack);
+  Predictor predictor(view);
+  RenderSettings settings = small_picture();
+  settings.recipe.select = Select::error_driven;
+  settings.recipe.filter = Filter::hard;
+  settings.recipe.face_size_px = 256;  // 1.5 MiB a map
+  double before = INFINITY;
+  for (const uint64_t most : {1, 3, 6, 12, 24}) {
+    const BudgetedPlan plan = keep_budget(predictor, settings, {.max_shadow_maps = most, .max_error = 0.0f});
+    EXPECT_TRUE(plan.keeps_budget);
+    EXPECT_EQ(plan.prediction.stats.shadow_maps, most) << "no error is too small for a map more";
+    EXPECT_EQ(plan.recipe.d_init_m, settings.recipe.d_init_m);
+    EXPECT_LT(*plan.expected_rmse, before);
+    before = *plan.expected_rmse;
+    const BudgetedPlan maps = keep_budget(predictor, settings, {.max_shadow_maps = most});
+    EXPECT_EQ(maps.prediction.plan.list.center, plan.prediction.plan.list.center);
+    const BudgetedPlan bytes = keep_budget(predictor, settings, {.max_shadow_bytes = most * 6 * 4 * 256 * 256 + 1});
+    EXPECT_EQ(bytes.prediction.plan.list.center, plan.prediction.plan.list.center);
+    const BudgetedPlan error = keep_budget(predictor, settings, {.max_error = static_cast<float>(before) + 1e-6f});
+    EXPECT_LE(error.prediction.stats.shadow_maps, most);
+    EXPECT_LE(*error.expected_rmse, before + 2e-6);
+  }
+  EXPECT_NEAR(before, 0.0, 1e-6);
+  const BudgetedPlan none = keep_budget(predictor, settings, {.max_shadow_bytes = 1});
+  EXPECT_FALSE(none.keeps_budget);
+  EXPECT_EQ(none.prediction.stats.shadow_maps, 1u);
 }
 
 TEST(Prediction, CountsLightsMapsAndViews) {

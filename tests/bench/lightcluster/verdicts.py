@@ -5,14 +5,13 @@ import math
 from dataclasses import dataclass
 
 import paper
-from measure import median_ratio
+from measure import ERROR_DRIVEN_SHARE, median_ratio
 
 SELECTION_GOALS = ((paper.SELECTION_LIGHTS, paper.SELECTION_MS), (100_000, 100.0))  # lights, milliseconds
 # Time as lights to the power of this; n log n, which sorting needs, is 1.11 between 2,048 and 100,000 lights.
 LINEAR_EXPONENT = 1.12
 RATIO_COUNTS = (26, 10)  # clusters of Sponza for which the goal is the paper's ratio
 VISIBILITY_SHARE = 0.25  # of the paper's bytes
-ERROR_DRIVEN_SHARE = 0.6  # of the paper selection's maps
 PREDICTION_SHARE = 0.05
 PREDICTED = ("light_clusters", "shadow_maps", "shadow_views", "shadow_triangles", "shadow_bytes", "visibility_bytes")
 MIB = 2**20
