@@ -3,13 +3,14 @@
 // The same for all threads of a work group, so that the group runs one loop: groups never reach over a tile's edge.
 #ifndef CHANDELIER_LOOKUP_GLSL
 #define CHANDELIER_LOOKUP_GLSL
+#include "shading/strips.glsl"
 
 const uint LOOKUP_ALL = 0u, LOOKUP_TILES = 1u;  // frame/recipe.h
 
 // The first light from `light` on that may reach this group's tile, or light_end.
 uint next_light(uint light) {
   if (lookup_answer == LOOKUP_ALL) return light;
-  uvec2 tile = gl_WorkGroupID.xy * gl_WorkGroupSize.xy / TILE_SIZE_PX;
+  uvec2 tile = square_of_group() * gl_WorkGroupSize.xy / TILE_SIZE_PX;
   uint first_word = (tile.y * round.tiles_x + tile.x) * round.words_per_tile;
   while (light < round.light_end) {
     uint bits = tile_words[first_word + light / 32u].bits >> (light % 32u);

@@ -61,7 +61,7 @@ vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = ivec2(pixel_of_thread());
   if (any(greaterThanEqual(vec2(pixel), view.size_px))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
   vec4 radiance = imageLoad(radiance_image, pixel);

@@ -12,7 +12,7 @@ uint next_map(uint light) {
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = ivec2(pixel_of_thread());
   if (any(greaterThanEqual(vec2(pixel), view.size_px))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
   if (depth == 0.0 || round.first_light == round.light_end) return;
