@@ -10,7 +10,10 @@ namespace {
 constexpr float lights_times_points = 3e5f;
 constexpr float fewest_rows = 36.0f, most_rows = 108.0f;
 constexpr uint32_t scatter_of_search = 1;
-constexpr double in_hand = 0.85;  // of the target: estimates of soft shadows may be too high (ERROR_SELECTION.md)
+// Of the error that clusters are expected to make. What is expected of a selection may be too low by a third; what more
+// maps would take away of that is worth a few, but not as many as clusters have (ERROR_SELECTION.md).
+constexpr double in_hand = 0.85;
+constexpr double amply_in_hand = 0.65;
 
 constexpr double invisible_rmse = 5e-4;  // an eighth of what a byte of a channel holds
 
@@ -64,7 +67,12 @@ std::vector<MapMember> ErrorDriven::select(std::span<const uint32_t> in_view, st
   if (recipe.max_maps) return ladder_->with_at_most(most_maps);
   const Filter soft = recipe.filter == Filter::hard ? Filter::pcss : recipe.filter;
   const double target = estimated_rmse(*judge_, clusters, {soft, recipe.face_size_px});
-  return within(std::max(in_hand * target, invisible_rmse), map_count(clusters), recipe);
+  const uint32_t most = map_count(clusters);
+  const auto maps_within = [&](double share) {
+    return map_count(within(std::max(share * target, invisible_rmse), most, recipe));
+  };
+  const uint32_t ample = std::min(maps_within(amply_in_hand), most * 3 / 5);
+  return ladder_->with_at_most(std::max(maps_within(in_hand), ample));
 }
 
 double ErrorDriven::expected_rmse(std::span<const uint32_t> in_view, std::span<const MapMember> members,

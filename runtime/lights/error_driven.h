@@ -33,9 +33,10 @@ class ErrorDriven {
   ErrorDriven(const pack::View& pack, const rays::PackRays& rays) : scene_(pack, rays) {}
 
   /// With limits in the recipe the best that keeps them, maps before error; `clusters` are not asked then. Without, the
-  /// fewest shadow maps whose expected error, read by `recipe.filter`, is surely no more than that of `clusters`. Those
-  /// need a soft filter: theirs is PCSS where the recipe says hard. All numbers of lights in `clusters` and in the
-  /// answer are indices into `in_view`, numbers in the pack in ascending order.
+  /// fewest shadow maps whose expected error, read by `recipe.filter`, is surely no more than that of `clusters`; up to
+  /// 0.6 of theirs, also such as make that surer. Clusters need a soft filter: theirs is PCSS where the recipe says
+  /// hard. All numbers of lights in `clusters` and in the answer are indices into `in_view`, numbers in the pack in
+  /// ascending order.
   std::vector<MapMember> select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
                                 const SampledView& view, const Recipe& recipe);
   /// estimated_rmse() of `members`, read by `recipe.filter`; numbers as above.
