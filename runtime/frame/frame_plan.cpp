@@ -36,7 +36,7 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
 // LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved.
 bool reference_is_cheaper(const Recipe& recipe, const LightList& list) {
   return recipe.select == Select::light_clusters && !list.maps.empty() &&
-         static_cast<float>(list.maps.size()) >= recipe.reference_share * static_cast<float>(list.lights.size());
+         static_cast<float>(list.maps.size()) >= recipe.reference_share * static_cast<float>(list.lights_in_view);
 }
 
 // The reference's answers; everything else as asked.
@@ -82,7 +82,7 @@ FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, 
   const uint64_t map_bytes = cube_bytes(settings.recipe.face_size_px);
   FrameStats stats;
   stats.lights = lights;
-  stats.lights_in_view = plan.list.lights.size();
+  stats.lights_in_view = plan.list.lights_in_view;
   stats.light_clusters = plan.list.maps.size();
   stats.centers = centers_of_pack_lights(plan.list, lights);
   stats.reference_path = plan.recipe.select != settings.recipe.select;

@@ -114,7 +114,7 @@ double estimated_rmse(const LightSamples& samples, std::span<const MapMember> me
     for (const LightSamples::Reach& reach : samples.reach(member.light)) {
       float& lit = of_map[reach.point];
       if (lit == not_asked) lit = visibility(samples, member, reach.point, reading);
-      estimate[reach.point] += lit * reach.radiance;
+      estimate[reach.point] += member.share * lit * reach.radiance;
     }
   }
   double sum = 0.0;

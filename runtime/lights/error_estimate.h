@@ -15,6 +15,7 @@ struct MapMember {
   uint32_t light;
   uint32_t center;
   float filter_radius_m;  // of the map, as ShadowMap has it
+  float share = 1.0f;     // of the light; those of one light in several maps add up to 1
 };
 
 /// How shadow maps are read.

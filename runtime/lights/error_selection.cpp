@@ -8,6 +8,7 @@
 #include <queue>
 #include <utility>
 
+#include "lights/map_shares.h"
 #include "lights/shown_curve.h"
 
 namespace chandelier {
@@ -30,6 +31,7 @@ class Search {
   uint32_t map_count() const { return map_count_; }
   double error() const { return error_; }
   const std::vector<uint32_t>& centers() const { return center_; }
+  std::vector<std::vector<uint32_t>> take_neighbours() { return std::move(neighbours_); }
 
   /// Takes away the centre whose loss raises the error least; false where none can go.
   bool drop_one();
@@ -268,27 +270,25 @@ ErrorLadder::ErrorLadder(const LightSamples& samples, lights::DynamicLights dyna
     if (search.map_count() <= exchange_below) search.exchange();
     rungs_.push_back({search.centers(), search.error()});
   }
+  lenders_ = search.take_neighbours();
   std::reverse(rungs_.begin(), rungs_.end());
   for (size_t i = 1; i < rungs_.size(); ++i)
     if (rungs_[i].error > rungs_[i - 1].error) rungs_[i] = rungs_[i - 1];
+  members_.resize(rungs_.size());
 }
 
 uint32_t ErrorLadder::fewest_maps() const {
   return static_cast<uint32_t>(samples_.lights().size() + 1 - rungs_.size());
 }
 
-std::vector<MapMember> ErrorLadder::members(const Rung& rung) const {
-  std::vector<MapMember> members;
-  for (uint32_t light = 0; light < rung.center.size(); ++light) members.push_back({light, rung.center[light], 0.0f});
-  std::sort(members.begin(), members.end(), [](const MapMember& a, const MapMember& b) {
-    return a.center != b.center ? a.center < b.center : a.light < b.light;
-  });
-  return members;
+const std::vector<MapMember>& ErrorLadder::members(size_t rung) const {
+  if (members_[rung].empty()) members_[rung] = share_out(samples_, rungs_[rung].center, lenders_);
+  return members_[rung];
 }
 
 std::vector<MapMember> ErrorLadder::with_at_most(uint32_t maps) const {
   const uint32_t fewest = fewest_maps();
-  return members(rungs_[std::min<size_t>(std::max(maps, fewest) - fewest, rungs_.size() - 1)]);
+  return members(std::min<size_t>(std::max(maps, fewest) - fewest, rungs_.size() - 1));
 }
 
 std::vector<MapMember> ErrorLadder::within(double most_rmse, const LightSamples& judge,
@@ -296,12 +296,12 @@ std::vector<MapMember> ErrorLadder::within(double most_rmse, const LightSamples&
   size_t low = 0, high = rungs_.size() - 1;
   while (low < high) {
     const size_t middle = (low + high) / 2;
-    if (estimated_rmse(judge, members(rungs_[middle]), reading) <= most_rmse)
+    if (estimated_rmse(judge, members(middle), reading) <= most_rmse)
       high = middle;
     else
       low = middle + 1;
   }
-  return members(rungs_[low]);
+  return members(low);
 }
 
 }  // namespace chandelier

@@ -18,7 +18,8 @@ class ErrorLadder {
   ErrorLadder(const LightSamples& samples, lights::DynamicLights dynamic_lights);
 
   uint32_t fewest_maps() const;
-  /// The best with at most `maps` of them (or fewest_maps(), where that is more), by the error of hard shadows.
+  /// Lights without a map of their own may take shares of several (share_out()). The best with at most `maps` of them
+  /// (or fewest_maps(), where that is more), by the error of hard shadows.
   std::vector<MapMember> with_at_most(uint32_t maps) const;
   /// The fewest maps whose estimated_rmse() is at most `most_rmse`. `judge` is of the same view and lights, but has
   /// other points than the ladder was made for, on which it does better than anywhere else.
@@ -27,12 +28,14 @@ class ErrorLadder {
  private:
   struct Rung {
     std::vector<uint32_t> center;  // of each light
-    double error;                  // sum of squares
+    double error;                  // sum of squares, each light in one map
   };
-  std::vector<MapMember> members(const Rung& rung) const;
+  const std::vector<MapMember>& members(size_t rung) const;
 
   const LightSamples& samples_;
+  std::vector<std::vector<uint32_t>> lenders_;  // of each light those whose map it may take, nearest first
   std::vector<Rung> rungs_;  // by the number of maps, one more each, from fewest_maps(); error never rises
+  mutable std::vector<std::vector<MapMember>> members_;  // of each rung; empty until asked for
 };
 
 }  // namespace chandelier

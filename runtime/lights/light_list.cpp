@@ -44,6 +44,7 @@ struct Member {
   uint32_t center;
   float map_range_m;
   float filter_radius_m;
+  float share = 1.0f;  // of the light; the rest takes other maps
 };
 
 uint32_t index_in(std::span<const uint32_t> ascending, uint32_t number) {
@@ -172,8 +173,31 @@ std::vector<Member> members_by_error(std::span<const pack::Light> lights, std::s
   }
   std::vector<Member> members;
   for (const MapMember& m : chosen)
-    members.push_back({in_view[m.light], in_view[m.center], range_m[m.center], m.filter_radius_m});
+    members.push_back({in_view[m.light], in_view[m.center], range_m[m.center], m.filter_radius_m, m.share});
   return members;
+}
+
+// A light that shall have another map than it has most of takes that alone.
+void move_to_held(std::span<const pack::Light> lights, std::span<const uint32_t> centers,
+                  std::vector<Member>& members) {
+  std::unordered_map<uint32_t, Member> most;
+  for (const Member& member : members) {
+    Member& largest = most.try_emplace(member.light, member).first->second;
+    if (member.share > largest.share) largest = member;
+  }
+  const auto is_moved = [&](uint32_t light) {
+    const uint32_t held = centers[light];
+    return held < lights.size() && is_directional(lights[held]) == is_directional(lights[light]) &&
+           held != most.at(light).center;
+  };
+  std::erase_if(members, [&](const Member& member) {
+    return is_moved(member.light) && member.center != most.at(member.light).center;
+  });
+  for (Member& member : members) {
+    if (!is_moved(member.light)) continue;
+    member.center = centers[member.light];
+    member.share = 1.0f;
+  }
 }
 
 // Lights take the maps that they are told to; a map's C_att and area light follow its lights (LightCluster §3.1.3).
@@ -183,11 +207,10 @@ void hold_centers(std::span<const pack::Light> lights, std::span<const uint32_t>
     float range_m = 0.0f;
     float filter_radius_m = 0.0f;
   };
+  move_to_held(lights, centers, members);
   std::unordered_map<uint32_t, Map> maps;
-  for (Member& member : members) {
+  for (const Member& member : members) {
     const pack::Light& light = lights[member.light];
-    const uint32_t held = centers[member.light];
-    if (held < lights.size() && is_directional(lights[held]) == is_directional(light)) member.center = held;
     const float apart = glm::distance(light.position_ws, lights[member.center].position_ws);
     Map& map = maps[member.center];
     if (!is_directional(light)) map.range_m = std::max(map.range_m, apart + light.range_m);
@@ -231,7 +254,7 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
   if (!aids.centers.empty()) hold_centers(lights, aids.centers, members);
   std::sort(members.begin(), members.end(), by_center);
 
-  LightList list;
+  LightList list{.lights_in_view = static_cast<uint32_t>(in_view.size())};
   for (size_t i = 0; i < members.size(); ++i) {
     const Member& member = members[i];
     if (i == 0 || members[i - 1].center != member.center) {
@@ -243,17 +266,24 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
       list.map_direction_ws.push_back(lights[member.center].direction_ws);
     }
     list.lights.push_back(frame_light(lights[member.light]));
+    list.lights.back().radiant *= member.share;
     list.lights.back().map = static_cast<uint32_t>(list.maps.size() - 1);
     ++list.maps.back().light_count;
     list.pack_light.push_back(member.light);
     list.center.push_back(member.center);
+    list.share.push_back(member.share);
   }
   return list;
 }
 
 std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count) {
   std::vector<uint32_t> centers(light_count, pack::none);
-  for (size_t i = 0; i < list.center.size(); ++i) centers[list.pack_light[i]] = list.center[i];
+  std::vector<float> largest(light_count, 0.0f);
+  for (size_t i = 0; i < list.center.size(); ++i) {
+    if (list.share[i] <= largest[list.pack_light[i]]) continue;
+    largest[list.pack_light[i]] = list.share[i];
+    centers[list.pack_light[i]] = list.center[i];
+  }
   return centers;
 }
 
@@ -262,10 +292,11 @@ double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& 
   if (!aids.surroundings) throw std::invalid_argument("expected_rmse: needs to know the lights' surroundings");
   std::vector<uint32_t> in_view = list.pack_light;
   std::sort(in_view.begin(), in_view.end());
+  in_view.erase(std::unique(in_view.begin(), in_view.end()), in_view.end());
   std::vector<MapMember> members;
   for (size_t i = 0; i < list.lights.size(); ++i)
     members.push_back({index_in(in_view, list.pack_light[i]), index_in(in_view, list.center[i]),
-                       list.maps[list.lights[i].map].filter_radius_m});
+                       list.maps[list.lights[i].map].filter_radius_m, list.share[i]});
   return aids.surroundings->by_error().expected_rmse(in_view, members, {camera, aspect, aids.ambient, aids.exposure_ev},
                                                      recipe);
 }

@@ -14,13 +14,16 @@
 namespace chandelier {
 
 /// The lights that can reach something in view, those of one shadow map after each other, maps in ascending order of
-/// their centre's number in the pack: with one light per map that is the pack's order.
+/// their centre's number in the pack: with one light per map that is the pack's order. Selection by error may give a
+/// light shares of several maps: then it stands in `lights` once for each, as bright as its share.
 struct LightList {
   std::vector<frame::FrameLight> lights;
   std::vector<frame::ShadowMap> maps;       // cube, first_view and view_count are still open
   std::vector<glm::vec3> map_direction_ws;  // the way that each map's centre shines: cascades are drawn along it
   std::vector<uint32_t> pack_light;         // number in the pack, of each of `lights`
   std::vector<uint32_t> center;             // number in the pack of the light whose map each of `lights` takes
+  std::vector<float> share;                 // how much of the light each of `lights` is; those of one add up to 1
+  uint32_t lights_in_view = 0;              // each counted once
 };
 
 /// What a selection may go on from beside the lights. What the recipe does not ask for may be missing.
@@ -32,7 +35,7 @@ struct SelectAids {
   /// empty.
   std::span<const uint32_t> previous_centers;
   /// For each light the number of the light whose map it shall take; pack::none, or a directional light for another or
-  /// the other way round: as selected. May be empty.
+  /// the other way round, or the map that most of the light takes anyway: as selected. May be empty.
   std::span<const uint32_t> centers;
 };
 
@@ -46,7 +49,8 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
 double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& camera, float aspect,
                      const SelectAids& aids);
 
-/// Of `light_count` lights of the pack the one whose map each takes, pack::none where it is not in view.
+/// Of `light_count` lights of the pack the one whose map each takes, or takes the largest share of; pack::none where it
+/// is not in view.
 std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count);
 
 }  // namespace chandelier

@@ -49,9 +49,10 @@ void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budg
 }  // namespace
 
 std::vector<SharedMap> shared_maps(const pack::File& pack, const LightList& list) {
+  const std::vector<uint32_t> centers = centers_of_pack_lights(list, pack.view().lights.size());
   std::vector<SharedMap> shared;
   for (std::size_t i = 0; i < list.lights.size(); ++i)
-    if (list.center[i] != list.pack_light[i])
+    if (list.center[i] != list.pack_light[i] && list.center[i] == centers[list.pack_light[i]])
       shared.push_back({name_of(pack, list.pack_light[i]), name_of(pack, list.center[i])});
   return shared;
 }

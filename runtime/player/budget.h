@@ -7,7 +7,8 @@
 
 namespace chandelier::player {
 
-/// The lights of a list that take another one's shadow map, in the list's order.
+/// The lights of a list that take another one's shadow map, or shares of several (the largest's is named), in
+/// the list's order.
 std::vector<SharedMap> shared_maps(const pack::File& pack, const LightList& list);
 
 /// Where a budget is given, gives each recipe with light clusters the d_init that keeps it, and tells error-driven

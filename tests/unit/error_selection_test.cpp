@@ -5,78 +5,28 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
-#include <random>
 #include <set>
 #include <stdexcept>
 
-#include "../gpu/scene_builder.h"
 #include "lights/light_list.h"
 #include "lights/shown_curve.h"
+#include "sampled_scene.h"
 
 namespace chandelier {
 namespace {
 
-constexpr ShadowReading hard{Filter::hard, 512};
+using test::divided_floor;
+using test::from_above;
+using test::hard;
+using test::pillars;
+using test::Sampled;
+using test::shares_of;
+
 constexpr float tolerance = 1e-3f;  // of the search's table, as against estimated_rmse()
 constexpr double rounding = 1e-6;
-
-// Straight down on a floor 8 m wide.
-Camera from_above() {
-  Camera camera;
-  camera.eye_ws = {0, 6, 0};
-  camera.forward_ws = {0, -1, 0};
-  camera.up_ws = {0, 0, -1};
-  camera.yfov_rad = 1.1f;
-  return camera;
-}
-
-// A wall along z divides the floor; lights stand at x = -2, -1, 1 and 2 m.
-test::Scene divided_floor() {
-  test::Scene scene;
-  const uint32_t white = scene.add_material(test::plain_material(glm::vec3(0.8f)));
-  scene.add(test::level_square(glm::vec3(0), 4), white);
-  scene.add(test::box({-0.01f, 0.0f, -4.0f}, {0.01f, 4.0f, 4.0f}), white);
-  for (const float x : {-2.0f, -1.0f, 1.0f, 2.0f}) scene.lights.push_back(test::point_light({x, 1.5f, 0.0f}, 10, 20));
-  return scene;
-}
-
-// Pillars under a grid of lights of several colours and ranges.
-test::Scene pillars(uint32_t seed) {
-  std::mt19937 random(seed);
-  const auto uniform = [&](float from, float to) {
-    return from + (to - from) * static_cast<float>(random() >> 8) * 0x1p-24f;
-  };
-  test::Scene scene;
-  const uint32_t white = scene.add_material(test::plain_material(glm::vec3(0.7f)));
-  scene.add(test::level_square(glm::vec3(0), 4), white);
-  for (int i = 0; i < 9; ++i) {
-    const glm::vec3 at(uniform(-3, 3), 0.0f, uniform(-3, 3));
-    scene.add(test::box(at, at + glm::vec3(0.3f, uniform(0.5f, 2.0f), 0.3f)), white);
-  }
-  for (int i = 0; i < 24; ++i) {
-    const float x = uniform(-3, 3), z = uniform(-3, 3);
-    scene.lights.push_back(test::point_light({x, uniform(1.0f, 3.0f), z}, uniform(1, 20), uniform(2, 8)));
-  }
-  return scene;
-}
-
-struct Sampled {
-  explicit Sampled(const test::Scene& scene, uint32_t scatter = 0)
-      : pack(scene.open()), rays(pack.view()), sampled(pack.view(), rays), numbers(pack.view().lights.size()) {
-    std::iota(numbers.begin(), numbers.end(), 0u);
-    samples.emplace(sampled, numbers, from_above(), 16.0f / 9.0f, SampleSettings{.scatter = scatter});
-  }
-  double rmse(const std::vector<MapMember>& members) const { return estimated_rmse(*samples, members, hard); }
-
-  pack::File pack;
-  rays::PackRays rays;
-  SampledScene sampled;
-  std::vector<uint32_t> numbers;
-  std::optional<LightSamples> samples;
-};
 
 ErrorLadder ladder_of(const Sampled& sampled) {
   return ErrorLadder(*sampled.samples, lights::DynamicLights::cluster);
@@ -179,9 +129,10 @@ TEST(ErrorLadderTest, MoreMapsNeverCostMoreAndEveryCenterTakesItsOwn) {
     for (uint32_t maps = 1; maps <= 24; ++maps) {
       const auto members = ladder.with_at_most(maps);
       const auto centers = centers_of(members);
-      ASSERT_EQ(members.size(), 24u);
       EXPECT_LE(centers.size(), maps);
       for (const MapMember& m : members) EXPECT_TRUE(!centers.contains(m.light) || m.center == m.light);
+      for (const auto& [light, sum] : shares_of(members)) EXPECT_NEAR(sum, 1.0f, 1e-4f) << light;
+      EXPECT_EQ(shares_of(members).size(), 24u);
       const double now = s.rmse(members);
       EXPECT_LE(now, last + tolerance) << seed << ", " << maps << " maps";
       last = now;
@@ -196,13 +147,16 @@ TEST(ErrorLadderTest, IsTheSameEveryTime) {
   for (uint32_t maps = 1; maps <= 24; ++maps) {
     const auto x = first.with_at_most(maps), y = second.with_at_most(maps);
     ASSERT_EQ(x.size(), y.size());
-    for (size_t i = 0; i < x.size(); ++i) EXPECT_TRUE(x[i].light == y[i].light && x[i].center == y[i].center);
+    for (size_t i = 0; i < x.size(); ++i) {
+      EXPECT_TRUE(x[i].light == y[i].light && x[i].center == y[i].center);
+      EXPECT_EQ(x[i].share, y[i].share);
+    }
   }
 }
 
 // The same number of maps chosen by distance alone costs more.
 TEST(ErrorLadderTest, DoesBetterThanDistances) {
-  const Sampled s(pillars(3)), judge(pillars(3), 1);
+  const Sampled s(pillars(3)), judge(pillars(3), {.scatter = 1});
   const ErrorLadder ladder = ladder_of(s);
   for (const float d_init : {1.0f, 1.5f, 2.0f}) {
     Recipe recipe;
@@ -218,7 +172,7 @@ TEST(ErrorLadderTest, DoesBetterThanDistances) {
 }
 
 TEST(ErrorLadderTest, KeepsWithinAnErrorWithAsFewMapsAsItCan) {
-  const Sampled s(pillars(5)), judge(pillars(5), 1);
+  const Sampled s(pillars(5)), judge(pillars(5), {.scatter = 1});
   const ErrorLadder ladder = ladder_of(s);
   size_t last = 25;
   for (const double most : {rounding, 0.01, 0.03, 0.1, 1.0}) {
@@ -248,6 +202,41 @@ TEST(ErrorLadderTest, DirectionalLightsShareAmongThemselves) {
   const ErrorLadder ladder = ladder_of(s);
   EXPECT_EQ(ladder.fewest_maps(), 2u);
   for (const MapMember& m : ladder.with_at_most(1)) EXPECT_EQ(m.light < 4, m.center < 4);
+}
+
+TEST(ErrorDrivenTest, ALightInSeveralMapsIsAsBrightAsInOneAndCountsOnce) {
+  const Sampled s(pillars(2));
+  const auto& lights = s.pack.view().lights;
+  Surroundings surroundings(s.pack.view());
+  Recipe recipe;
+  recipe.select = Select::error_driven;
+  recipe.max_maps = 5;
+  SelectAids aids{.surroundings = &surroundings};
+  const LightList list = select_lights(lights, recipe, from_above(), 16.0f / 9.0f, aids);
+  EXPECT_EQ(list.lights_in_view, 24u);
+  ASSERT_GT(list.lights.size(), 24u);
+  std::vector<glm::vec3> radiant(24, glm::vec3(0.0f));
+  for (size_t i = 0; i < list.lights.size(); ++i) radiant[list.pack_light[i]] += list.lights[i].radiant;
+  for (uint32_t light = 0; light < 24; ++light)
+    EXPECT_LT(glm::distance(radiant[light], lights[light].color * lights[light].intensity), 1e-3f);
+  const double shared_rmse = expected_rmse(list, recipe, from_above(), 16.0f / 9.0f, aids);
+
+  // Held where it is, it stays in several; elsewhere it goes whole.
+  std::vector<uint32_t> centers = centers_of_pack_lights(list, 24);
+  aids.centers = centers;
+  const LightList same = select_lights(lights, recipe, from_above(), 16.0f / 9.0f, aids);
+  EXPECT_EQ(same.pack_light, list.pack_light);
+  EXPECT_EQ(same.center, list.center);
+  EXPECT_EQ(same.share, list.share);
+  const auto divided = std::find_if(list.share.begin(), list.share.end(), [](float share) { return share < 1.0f; });
+  const uint32_t light = list.pack_light[divided - list.share.begin()];
+  const uint32_t elsewhere = list.center[0] == centers[light] ? list.center.back() : list.center[0];
+  centers[light] = elsewhere;
+  const LightList moved = select_lights(lights, recipe, from_above(), 16.0f / 9.0f, aids);
+  EXPECT_EQ(std::count(moved.pack_light.begin(), moved.pack_light.end(), light), 1);
+  EXPECT_EQ(centers_of_pack_lights(moved, 24)[light], elsewhere);
+  EXPECT_EQ(moved.lights_in_view, 24u);
+  EXPECT_GT(expected_rmse(moved, recipe, from_above(), 16.0f / 9.0f, aids), shared_rmse);
 }
 
 TEST(ErrorDrivenTest, ListsEveryLightInViewOnceUnderAsFewMapsAsItsErrorAllows) {
