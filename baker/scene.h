@@ -116,6 +116,7 @@ struct Light {
   std::uint32_t priority = 128;    // 0 to 255
   bool dynamic = false;
   bool unclustered = false;
+  std::string group;  // name of the lights that share its shadow map; empty: none
 };
 
 struct Camera {

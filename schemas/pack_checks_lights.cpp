@@ -34,6 +34,20 @@ std::string bounds_fault(const View& view) {
   return {};
 }
 
+/// Numbered from 1, in the order of the first light of each.
+std::string group_fault(const View& view) {
+  std::uint32_t groups = 0;
+  for (std::size_t i = 0; i < view.lights.size(); ++i) {
+    const std::uint32_t group = view.lights[i].group;
+    if (group > groups + 1) {
+      return at("lights", i) + ".group: " + std::to_string(group) + " comes after " + std::to_string(groups) +
+             " groups";
+    }
+    groups = std::max(groups, group);
+  }
+  return {};
+}
+
 /// A traversal goes on with the next node or with `miss`, so it ends if `miss` is always ahead. Every node ends within
 /// the one that it is in; each point and spot light has one leaf.
 std::string bvh_fault(const View& view) {
@@ -72,6 +86,7 @@ std::string bvh_fault(const View& view) {
 
 std::string light_fault(const View& view) {
   if (std::string line = bounds_fault(view); !line.empty()) return line;
+  if (std::string line = group_fault(view); !line.empty()) return line;
   return bvh_fault(view);
 }
 

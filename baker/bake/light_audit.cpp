@@ -246,6 +246,25 @@ void audit_places(Audit& audit, const Numbers& placed) {
   audit.name("reaching_nothing", "reaching nothing: no triangle is within their range and cone", nothing);
 }
 
+// ---- Groups ---------------------------------------------------------------------------------------------------------
+
+void audit_groups(Audit& audit) {
+  std::vector<std::array<bool, 2>> holds(audit.pack.lights.size() + 1);  // of each group: placed, directional lights
+  Numbers opted_out, mixed;
+  for (std::size_t i = 0; i < audit.pack.lights.size(); ++i) {
+    const pack::Light& light = audit.baked(i);
+    holds[light.group][light.type == pack::LightType::directional] = true;
+    if (light.group != 0 && light.unclustered) opted_out.push_back(i);
+  }
+  for (std::size_t i = 0; i < audit.pack.lights.size(); ++i) {
+    const pack::Light& light = audit.baked(i);
+    const bool both = holds[light.group][0] && holds[light.group][1];
+    if (light.group != 0 && both && light.type == pack::LightType::directional) mixed.push_back(i);
+  }
+  audit.name("grouped_and_unclustered", "in a group and cluster false: they share the group's shadow map", opted_out);
+  audit.name("mixed_groups", "directional in a group with lights of another type: they share no map with those", mixed);
+}
+
 }  // namespace
 
 void audit_lights(const Scene& scene, const pack::Contents& pack, PassReport& pass, Warnings& warnings) {
@@ -257,6 +276,7 @@ void audit_lights(const Scene& scene, const pack::Contents& pack, PassReport& pa
   audit_defaults(audit, placed);
   audit_units(audit, placed);
   audit_places(audit, placed);
+  audit_groups(audit);
 }
 
 }  // namespace chandelier::baker

@@ -2,21 +2,34 @@
 // Lights and cameras into their records.
 #include "lights.h"
 
-#include <algorithm>
-#include <cfloat>
 #include <cmath>
+#include <string>
+#include <unordered_map>
 
 #include "light_bounds.h"
+#include "light_range.h"
 #include "voxel_grid.h"
 
 namespace chandelier::baker {
 
-float derived_range_m(float intensity_cd, const glm::vec3& color, float threshold_lx) {
-  const double brightest_cd = double{intensity_cd} * std::max({color.r, color.g, color.b});
-  return static_cast<float>(std::min(std::sqrt(brightest_cd / double{threshold_lx}), double{FLT_MAX}));
-}
+namespace {
+
+/// Numbers from 1, in the order in which the names are met; 0 for no name.
+class Groups {
+ public:
+  std::uint32_t number(const std::string& name) {
+    if (name.empty()) return 0;
+    return numbers_.try_emplace(name, static_cast<std::uint32_t>(numbers_.size() + 1)).first->second;
+  }
+
+ private:
+  std::unordered_map<std::string, std::uint32_t> numbers_;
+};
+
+}  // namespace
 
 void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings, pack::Contents& pack) {
+  Groups groups;
   for (const Light& light : scene.lights) {
     pack::Light out;
     out.position_ws = light.position_ws;
@@ -28,6 +41,7 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     out.priority = light.priority;
     out.dynamic = light.dynamic || light.node != kNone;
     out.unclustered = light.unclustered;
+    out.group = groups.number(light.group);
     out.node = light.node;
     out.bounds_center_ws = light.position_ws;
     out.name = strings.add(light.name);
@@ -39,7 +53,8 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     }
     out.type = light.type == LightType::spot ? pack::LightType::spot : pack::LightType::point;
     out.range_source = light.range_m ? pack::RangeSource::authored : pack::RangeSource::derived;
-    out.range_m = light.range_m ? *light.range_m : derived_range_m(light.intensity, light.color, range_threshold_lx);
+    out.range_m =
+        light.range_m ? *light.range_m : pack::derived_range_m(light.intensity, light.color, range_threshold_lx);
     if (light.type == LightType::spot) {
       out.inner_cone_cos = std::cos(light.inner_cone_rad);
       out.outer_cone_cos = std::cos(light.outer_cone_rad);

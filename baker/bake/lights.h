@@ -8,9 +8,6 @@
 
 namespace chandelier::baker {
 
-/// The distance at which the light's illuminance, falling with its square, is `threshold_lx`.
-float derived_range_m(float intensity_cd, const glm::vec3& color, float threshold_lx);
-
 /// After the voxels, in whose cells lights are placed.
 void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings, pack::Contents& pack);
 void make_cameras(const Scene& scene, Strings& strings, pack::Contents& pack);

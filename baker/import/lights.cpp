@@ -12,7 +12,8 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::array<std::string_view, 5> kKnownKeys = {"cluster", "dynamic", "power_w", "priority", "range_m"};
+constexpr std::array<std::string_view, 6> kKnownKeys = {"cluster", "dynamic",  "group",
+                                                        "power_w", "priority", "range_m"};
 constexpr double kMostPriority = 255, kMostPower = 1e12, kLeastRange = 1e-12, kMostRange = 3e38;
 
 /// One `extras.chandelier` and where it is; each member function reads one of its keys, where it is there.
@@ -29,6 +30,13 @@ struct Extras {
     if (it == json.end()) return std::nullopt;
     if (!it->is_boolean()) bad(key, "is not true or false", *it);
     return it->get<bool>();
+  }
+
+  std::optional<std::string> text(const char* key) const {
+    const auto it = json.find(key);
+    if (it == json.end()) return std::nullopt;
+    if (!it->is_string()) bad(key, "is not a string", *it);
+    return it->get<std::string>();
   }
 
   std::optional<double> number(const char* key, double least, double most) const {
@@ -64,6 +72,7 @@ void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, L
   if (const auto value = extras.integer("priority", 0, kMostPriority)) out.priority = *value;
   if (const auto value = extras.boolean("dynamic")) out.dynamic = *value;
   if (const auto value = extras.boolean("cluster")) out.unclustered = !*value;
+  if (const auto value = extras.text("group")) out.group = *value;
   if (const auto value = extras.number("power_w", 0, kMostPower)) out.power_w = static_cast<float>(*value);
   if (const auto value = extras.number("range_m", kLeastRange, kMostRange)) out.range_m = static_cast<float>(*value);
 }

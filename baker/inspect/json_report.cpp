@@ -103,7 +103,8 @@ Json lights(const pack::File& file) {
                     {"bounds_radius_m", light.bounds_radius_m},
                     {"priority", light.priority},
                     {"dynamic", light.dynamic == 1},
-                    {"unclustered", light.unclustered == 1}});
+                    {"unclustered", light.unclustered == 1},
+                    {"group", light.group}});
   }
   return list;
 }

@@ -6,7 +6,7 @@
 
 #include "shadows/deliver/visibility_textures.h"
 #include "shadows/project/shadow_views.h"
-#include "shadows/store/cube_array.h"
+#include "shadows/store/cube_bytes.h"
 
 namespace chandelier {
 namespace {
@@ -33,10 +33,15 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
           .z_far_m = settings.recipe.z_far_m};
 }
 
-// LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved.
-bool reference_is_cheaper(const Recipe& recipe, const LightList& list) {
-  return recipe.select == Select::light_clusters && !list.maps.empty() &&
-         static_cast<float>(list.maps.size()) >= recipe.reference_share * static_cast<float>(list.lights_in_view);
+float aspect_of(const RenderSettings& settings) {
+  return static_cast<float>(settings.width) / static_cast<float>(settings.height);
+}
+
+// LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved. But the
+// reference knows no groups, which are what their lights' author asked for.
+bool reference_is_cheaper(const Recipe& recipe, size_t lights, size_t maps, bool a_group_shares) {
+  return recipe.select == Select::light_clusters && maps > 0 && !a_group_shares &&
+         static_cast<float>(maps) >= recipe.reference_share * static_cast<float>(lights);
 }
 
 // The reference's answers; everything else as asked.
@@ -51,18 +56,20 @@ Recipe reference_of(Recipe recipe) {
 
 FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
                      const RoundLimits& limits, Surroundings* surroundings) {
-  const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+  const float aspect = aspect_of(settings);
   const SelectAids aids{.surroundings = surroundings,
                         .ambient = settings.ambient,
                         .exposure_ev = settings.exposure_ev,
                         .previous_centers = settings.previous_centers,
-                        .centers = settings.centers};
+                        .centers = settings.centers,
+                        .out_of_view = settings.lights_out_of_view};
   FramePlan plan{.recipe = settings.recipe};
   auto start = Clock::now();
   plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, aids);
-  if (reference_is_cheaper(plan.recipe, plan.list)) {
+  if (reference_is_cheaper(plan.recipe, plan.list.lights_in_view, plan.list.maps.size(),
+                           group_shares(lights, plan.list))) {
     plan.recipe = reference_of(plan.recipe);
-    plan.list = select_lights(lights, plan.recipe, settings.camera, aspect);
+    plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, {.out_of_view = aids.out_of_view});
   }
   plan.select_ms = ms_since(start);
 
@@ -76,6 +83,15 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
   plan.views.push_back({.clip_from_world = plan.view.clip_from_world});
   plan.project_ms = ms_since(start);
   return plan;
+}
+
+ShadowMapCounter::ShadowMapCounter(std::span<const pack::Light> lights, const RenderSettings& settings)
+    : recipe_(settings.recipe),
+      maps_(lights, settings.recipe, settings.camera, aspect_of(settings), settings.lights_out_of_view) {}
+
+uint64_t ShadowMapCounter::count(float d_init_m, uint64_t most) {
+  const size_t maps = maps_.count(d_init_m, most);
+  return reference_is_cheaper(recipe_, maps_.in_view(), maps, maps_.group_shares()) ? maps_.in_view() : maps;
 }
 
 FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights) {

@@ -7,7 +7,7 @@
 #include "frame/render_settings.h"
 #include "frame/rounds.h"
 #include "lights/light_list.h"
-#include "scene/gpu_scene.h"
+#include "scene/bounds.h"
 
 namespace chandelier {
 
@@ -24,6 +24,19 @@ struct FramePlan {
 /// `surroundings` are needed as select_lights() needs them.
 FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
                      const RoundLimits& limits, Surroundings* surroundings);
+
+/// Counts shadow_maps of planned_stats() for one d_init after another: in less time. For light clusters without walls,
+/// stability or held centres, and a filter that reads maps.
+class ShadowMapCounter {
+ public:
+  ShadowMapCounter(std::span<const pack::Light> lights, const RenderSettings& settings);
+  /// Any number above `most` where there are more.
+  uint64_t count(float d_init_m, uint64_t most);
+
+ private:
+  Recipe recipe_;
+  MapCounter maps_;
+};
 
 /// What is known of a frame before it is drawn: all but times, exposure, draws and triangles. `lights`: in the pack.
 FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights);

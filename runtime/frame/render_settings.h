@@ -22,6 +22,7 @@ struct RenderSettings {
   std::optional<float> exposure_ev;        // stops; absent: from the picture's own brightness
   std::vector<uint32_t> previous_centers;  // FrameStats::centers of the frame before, where the recipe has stability
   std::vector<uint32_t> centers;           // whose map each light of the pack takes; pack::none, or empty: as selected
+  bool lights_out_of_view = false;         // are selected too, as for a camera that looks everywhere
   VisibilitySource visibility;             // needed by filter rays, unused by others
 };
 

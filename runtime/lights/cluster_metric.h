@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/glm.hpp>
 
 namespace chandelier::lights {
@@ -16,6 +17,8 @@ struct ClusterLight {
   float cone_cos = -1.0f;                // cosine of a spot light's outer half angle; -1 shines all around
   bool dynamic = false;                  // something moves it
   bool unclustered = false;              // its author wants a shadow map of its own
+  uint32_t group = 0;                    // lights of one group share one map, with nobody else; 0: of none
+  uint32_t priority = 128;               // 0 to 255: higher ones are selected first
 };
 
 // Double precision: no distance between finite positions overflows, and the order of evaluation is the same wherever a

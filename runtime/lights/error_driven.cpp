@@ -42,14 +42,15 @@ void ErrorDriven::look(std::span<const uint32_t> in_view, const SampledView& vie
   judge_.emplace(scene_, in_view_, view.camera, view.aspect, sample_grid(in_view.size(), view));
 }
 
-void ErrorDriven::climb(const SampledView& view, lights::DynamicLights dynamic_lights) {
+void ErrorDriven::climb(const SampledView& view, lights::DynamicLights dynamic_lights,
+                        std::span<const uint32_t> group_centers) {
   if (ladder_ && dynamic_lights_ == dynamic_lights) return;
   ladder_.reset();
   dynamic_lights_ = dynamic_lights;
   SampleSettings settings = sample_grid(in_view_.size(), view);
   settings.scatter = scatter_of_search;
   samples_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
-  ladder_.emplace(*samples_, dynamic_lights);
+  ladder_.emplace(*samples_, dynamic_lights, group_centers);
 }
 
 // Estimates of soft filters have an error that more maps do not lower: the number of maps limits it.
@@ -59,9 +60,10 @@ std::vector<MapMember> ErrorDriven::within(double most_rmse, uint32_t most_maps,
 }
 
 std::vector<MapMember> ErrorDriven::select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
-                                           const SampledView& view, const Recipe& recipe) {
+                                           std::span<const uint32_t> group_centers, const SampledView& view,
+                                           const Recipe& recipe) {
   look(in_view, view);
-  climb(view, recipe.dynamic_lights);
+  climb(view, recipe.dynamic_lights, group_centers);
   const uint32_t most_maps = recipe.max_maps.value_or(UINT32_MAX);
   if (recipe.max_rmse) return within(*recipe.max_rmse, most_maps, recipe);
   if (recipe.max_maps) return ladder_->with_at_most(most_maps);

@@ -35,17 +35,18 @@ class ErrorDriven {
   /// With limits in the recipe the best that keeps them, maps before error; `clusters` are not asked then. Without, the
   /// fewest shadow maps whose expected error, read by `recipe.filter`, is surely no more than that of `clusters`; up to
   /// 0.6 of theirs, also such as make that surer. Clusters need a soft filter: theirs is PCSS where the recipe says
-  /// hard. All numbers of lights in `clusters` and in the answer are indices into `in_view`, numbers in the pack in
+  /// hard. All numbers of lights are indices into `in_view`, numbers in the pack in
   /// ascending order.
+  /// `group_centers`: of each light the one whose map its group shares, of a light in no group anything.
   std::vector<MapMember> select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
-                                const SampledView& view, const Recipe& recipe);
+                                std::span<const uint32_t> group_centers, const SampledView& view, const Recipe& recipe);
   /// estimated_rmse() of `members`, read by `recipe.filter`; numbers as above.
   double expected_rmse(std::span<const uint32_t> in_view, std::span<const MapMember> members, const SampledView& view,
                        const Recipe& recipe);
 
  private:
   void look(std::span<const uint32_t> in_view, const SampledView& view);
-  void climb(const SampledView& view, lights::DynamicLights dynamic_lights);
+  void climb(const SampledView& view, lights::DynamicLights dynamic_lights, std::span<const uint32_t> group_centers);
   std::vector<MapMember> within(double most_rmse, uint32_t most_maps, const Recipe& recipe) const;
 
   SampledScene scene_;

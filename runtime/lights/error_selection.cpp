@@ -26,7 +26,7 @@ bool is_directional(const pack::Light& light) {
 // An assignment of lights to centres, and the picture that it makes: one luminance for each point.
 class Search {
  public:
-  Search(const LightSamples& samples, lights::DynamicLights dynamic_lights);
+  Search(const LightSamples& samples, lights::DynamicLights dynamic_lights, std::span<const uint32_t> group_centers);
 
   uint32_t map_count() const { return map_count_; }
   double error() const { return error_; }
@@ -55,6 +55,8 @@ class Search {
   };
 
   void order_neighbours(lights::DynamicLights dynamic_lights);
+  void join_groups(std::span<const uint32_t> group_centers);
+  bool is_grouped(uint32_t light) const { return samples_.light(light).group != 0; }
   double change(uint32_t light, uint32_t from, uint32_t to) const;
   void move(uint32_t light, uint32_t to);
   uint32_t best_center(uint32_t light, uint32_t from, double& best) const;
@@ -80,7 +82,8 @@ class Search {
   std::priority_queue<Cost, std::vector<Cost>, std::greater<>> costs_;  // of dropping a centre, as last seen
 };
 
-Search::Search(const LightSamples& samples, lights::DynamicLights dynamic_lights)
+Search::Search(const LightSamples& samples, lights::DynamicLights dynamic_lights,
+               std::span<const uint32_t> group_centers)
     : samples_(samples), map_count_(static_cast<uint32_t>(samples.lights().size())) {
   const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);
   contributions_.resize(map_count_);
@@ -95,13 +98,27 @@ Search::Search(const LightSamples& samples, lights::DynamicLights dynamic_lights
   for (uint32_t light = 0; light < map_count_; ++light) center_.push_back(light);
   is_center_.assign(map_count_, true);
   order_neighbours(dynamic_lights);
-  for (uint32_t light = 0; light < map_count_; ++light) costs_.push({drop_cost(light), light});
+  join_groups(group_centers);
+  for (uint32_t light = 0; light < center_.size(); ++light)
+    if (is_center_[light]) costs_.push({drop_cost(light), light});
 }
 
-// Nearest first, directional lights by their directions. A light that keeps its own map has none, and is nobody's.
+// Once and for all: no light of a group has neighbours.
+void Search::join_groups(std::span<const uint32_t> group_centers) {
+  for (uint32_t light = 0; light < group_centers.size(); ++light) {
+    if (!is_grouped(light) || group_centers[light] == light) continue;
+    is_center_[light] = false;
+    --map_count_;
+    move(light, group_centers[light]);
+  }
+}
+
+// Nearest first, directional lights by their directions. A light that keeps its own map, or its group's, has none, and
+// is nobody's.
 void Search::order_neighbours(lights::DynamicLights dynamic_lights) {
   const auto keeps_own = [&](const pack::Light& light) {
-    return light.unclustered != 0 || (light.dynamic != 0 && dynamic_lights == lights::DynamicLights::own);
+    return light.group != 0 || light.unclustered != 0 ||
+           (light.dynamic != 0 && dynamic_lights == lights::DynamicLights::own);
   };
   neighbours_.resize(map_count_);
   for (uint32_t light = 0; light < map_count_; ++light) {
@@ -193,8 +210,8 @@ void Search::add(uint32_t center) {
   ++map_count_;
   move(center, center);
   for (uint32_t light = 0; light < center_.size(); ++light) {
-    const bool may =
-        !is_center_[light] && is_directional(samples_.light(light)) == is_directional(samples_.light(center));
+    const bool may = !is_center_[light] && !is_grouped(light) &&
+                     is_directional(samples_.light(light)) == is_directional(samples_.light(center));
     if (may && change(light, center_[light], center) < 0.0) move(light, center);
   }
 }
@@ -240,7 +257,7 @@ void Search::exchange() {
     const Saved before = save();
     std::vector<Cost> gains;
     for (uint32_t light = 0; light < is_center_.size(); ++light) {
-      if (is_center_[light]) continue;
+      if (is_center_[light] || is_grouped(light)) continue;
       add(light);
       gains.push_back({error_, light});
       restore(before);
@@ -262,8 +279,11 @@ void Search::exchange() {
 
 }  // namespace
 
-ErrorLadder::ErrorLadder(const LightSamples& samples, lights::DynamicLights dynamic_lights) : samples_(samples) {
-  Search search(samples, dynamic_lights);
+ErrorLadder::ErrorLadder(const LightSamples& samples, lights::DynamicLights dynamic_lights,
+                         std::span<const uint32_t> group_centers)
+    : samples_(samples) {
+  Search search(samples, dynamic_lights, group_centers);
+  most_maps_ = search.map_count();
   rungs_.push_back({search.centers(), search.error()});
   while (search.drop_one()) {
     search.settle();
@@ -278,7 +298,7 @@ ErrorLadder::ErrorLadder(const LightSamples& samples, lights::DynamicLights dyna
 }
 
 uint32_t ErrorLadder::fewest_maps() const {
-  return static_cast<uint32_t>(samples_.lights().size() + 1 - rungs_.size());
+  return static_cast<uint32_t>(most_maps_ + 1 - rungs_.size());
 }
 
 const std::vector<MapMember>& ErrorLadder::members(size_t rung) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lights/error_estimate.h"
@@ -11,11 +12,14 @@
 
 namespace chandelier {
 
-/// Selections with ever fewer shadow maps, from one for each light down to as few as can be.
+/// Selections with ever fewer shadow maps, from one for each light or group down to as few as can be.
 class ErrorLadder {
  public:
   /// Samples must outlive this. Lights that keep a map of their own (lights::has_own_center) lend it to none.
-  ErrorLadder(const LightSamples& samples, lights::DynamicLights dynamic_lights);
+  /// `group_centers`: of each light the one whose map its group shares, of a light in no group anything; needed where
+  /// there are groups.
+  ErrorLadder(const LightSamples& samples, lights::DynamicLights dynamic_lights,
+              std::span<const uint32_t> group_centers = {});
 
   uint32_t fewest_maps() const;
   /// Lights without a map of their own may take shares of several (share_out()). The best with at most `maps` of them
@@ -34,6 +38,7 @@ class ErrorLadder {
 
   const LightSamples& samples_;
   std::vector<std::vector<uint32_t>> lenders_;  // of each light those whose map it may take, nearest first
+  uint32_t most_maps_ = 0;
   std::vector<Rung> rungs_;  // by the number of maps, one more each, from fewest_maps(); error never rises
   mutable std::vector<std::vector<MapMember>> members_;  // of each rung; empty until asked for
 };

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <unordered_map>
+#include <utility>
 
 #include "lights/point_tree.h"
 
@@ -25,22 +27,24 @@ struct Candidate {
   }
 };
 
+}  // namespace
+
 class Selection {
  public:
   Selection(std::span<const ClusterLight> lights, const ClusterSettings& settings, const Blocked& blocked)
       : lights_(lights),
         settings_(settings),
         blocked_(blocked),
-        order_(selection_order()),
+        order_(selection_order(
+            [&](const ClusterLight& light) { return light.group == 0 && !has_own_center(light, settings); })),
+        round_(tree_of([&](uint32_t light) { return reach(lights_[light]) == 1.0; })),
+        narrow_(tree_of([&](uint32_t light) { return reach(lights_[light]) > 1.0; })),
+        d_min_(lights.size()),
         rank_(lights.size(), none),
-        nearest_(lights.size()) {
-    d_min_.reserve(lights.size());
-    for (const ClusterLight& light : lights) d_min_.push_back(scaled_d_min(settings, light.position_ws));
-    select_centers();
-    join_nearest();
-  }
+        nearest_(lights.size()) {}
 
-  LightClusters clusters() const;
+  LightClusters clusters();
+  size_t count(float d_init_m, size_t most);
 
  private:
   static constexpr uint32_t none = no_center;
@@ -57,38 +61,44 @@ class Selection {
     return metric_distance_m(lights_[light], lights_[center].position_ws);
   }
 
-  std::vector<uint32_t> selection_order() const;
+  template <typename Which>
+  std::vector<uint32_t> selection_order(Which which) const;
   template <typename Which>
   PointTree tree_of(Which which) const;
-  void select_centers();
+  size_t select_centers(size_t most);
   void cover(const PointTree& lights, double reach, uint32_t center);
   void join_nearest();
+  size_t join_groups();
   bool is_nearest_of_all(const Candidate& nearest, uint32_t light) const;
   Candidate nearest_center(const PointTree& centers, uint32_t light) const;
 
   const std::span<const ClusterLight> lights_;
-  const ClusterSettings& settings_;
-  const Blocked& blocked_;
-  const std::vector<uint32_t> order_;  // without the lights that have a centre of their own
+  ClusterSettings settings_;
+  const Blocked blocked_;
+  const std::vector<uint32_t> order_;  // without the lights that have a centre of their own, or a group
+  const PointTree round_;              // of the lights in order_ that shine all around
+  const PointTree narrow_;             // of the others
   std::vector<float> d_min_;           // that each light would have as a centre
   std::vector<uint32_t> rank_;         // of each light that is a centre
   std::vector<Candidate> nearest_;
 };
 
-// Lights that were centres, the others; within both by descending range, ties by index. The bits of floats that are not
-// negative rise with their values.
-std::vector<uint32_t> Selection::selection_order() const {
-  std::vector<uint64_t> keys;
+// Lights that were centres, the others; within both by descending priority, then range, ties by index. The bits of
+// floats that are not negative rise with their values.
+template <typename Which>
+std::vector<uint32_t> Selection::selection_order(Which which) const {
+  std::vector<std::pair<uint64_t, uint32_t>> keys;
   keys.reserve(lights_.size());
   for (uint32_t light = 0; light < lights_.size(); ++light) {
-    if (has_own_center(lights_[light], settings_)) continue;
-    const uint32_t falling = 0x7FFFFFFFu - std::bit_cast<uint32_t>(lights_[light].range_m + 0.0f);
-    keys.push_back(uint64_t{!was_center(light)} << 63 | uint64_t{falling} << 32 | light);
+    const ClusterLight& each = lights_[light];
+    if (!which(each)) continue;
+    const uint32_t falling = 0x7FFFFFFFu - std::bit_cast<uint32_t>(each.range_m + 0.0f);
+    keys.push_back({uint64_t{!was_center(light)} << 40 | uint64_t{255 - each.priority} << 32 | falling, light});
   }
   std::sort(keys.begin(), keys.end());
   std::vector<uint32_t> order;
   order.reserve(keys.size());
-  for (const uint64_t key : keys) order.push_back(static_cast<uint32_t>(key));
+  for (const auto& [key, light] : keys) order.push_back(light);
   return order;
 }
 
@@ -101,19 +111,25 @@ PointTree Selection::tree_of(Which which) const {
 }
 
 // §3.1.2, from the centres' side: each covers the lights within its d_min, and who is reached uncovered is a centre.
-void Selection::select_centers() {
-  const PointTree round = tree_of([&](uint32_t light) { return reach(lights_[light]) == 1.0; });
-  const PointTree narrow = tree_of([&](uint32_t light) { return reach(lights_[light]) > 1.0; });
+// Returns their number, and stops where it is above `most`.
+size_t Selection::select_centers(size_t most) {
+  for (uint32_t light = 0; light < lights_.size(); ++light) {
+    d_min_[light] = scaled_d_min(settings_, lights_[light].position_ws);
+    rank_[light] = none;
+  }
   for (uint32_t light = 0; light < lights_.size(); ++light) nearest_[light] = {0.0, none, light};  // own centres
   for (const uint32_t light : order_) nearest_[light] = {std::numeric_limits<double>::infinity(), none, none};
-  for (uint32_t i = 0; i < order_.size(); ++i) {
+  size_t centers = 0;
+  for (uint32_t i = 0; i < order_.size() && centers <= most; ++i) {
     const uint32_t light = order_[i];
     if (nearest_[light].center != none) continue;
+    ++centers;
     rank_[light] = i;
     nearest_[light] = {0.0, i, light};
-    cover(round, 1.0, light);
-    cover(narrow, 2.0, light);
+    cover(round_, 1.0, light);
+    cover(narrow_, 2.0, light);
   }
+  return centers;
 }
 
 void Selection::cover(const PointTree& lights, double reach, uint32_t center) {
@@ -166,8 +182,21 @@ void Selection::join_nearest() {
   }
 }
 
+// Returns how many groups there are.
+size_t Selection::join_groups() {
+  std::unordered_map<uint32_t, uint32_t> center_of_group;
+  for (const uint32_t light : selection_order([](const ClusterLight& each) { return each.group != 0; })) {
+    const uint32_t center = center_of_group.try_emplace(lights_[light].group, light).first->second;
+    nearest_[light] = {distance_m(light, center), none, center};
+  }
+  return center_of_group.size();
+}
+
 // In the order of their centres' indices: with d_init 0 that is the order of the lights.
-LightClusters Selection::clusters() const {
+LightClusters Selection::clusters() {
+  select_centers(lights_.size());
+  join_nearest();
+  join_groups();
   LightClusters result;
   std::vector<uint32_t> cluster_of_center(lights_.size());
   for (uint32_t light = 0; light < lights_.size(); ++light) {
@@ -188,7 +217,12 @@ LightClusters Selection::clusters() const {
   return result;
 }
 
-}  // namespace
+size_t Selection::count(float d_init_m, size_t most) {
+  settings_.d_init_m = d_init_m;
+  const auto own = std::count_if(lights_.begin(), lights_.end(),
+                                 [&](const ClusterLight& light) { return has_own_center(light, settings_); });
+  return select_centers(most) + static_cast<size_t>(own) + join_groups();
+}
 
 float scaled_d_min(const ClusterSettings& settings, const glm::vec3& center_ws) {
   const double depth = straight_distance_m(settings.camera_ws, center_ws) / double{settings.z_far_m};
@@ -204,12 +238,21 @@ float scaled_d_min(const ClusterSettings& settings, const glm::vec3& center_ws) 
 }
 
 bool has_own_center(const ClusterLight& light, const ClusterSettings& settings) {
-  return light.unclustered || (light.dynamic && settings.dynamic_lights == DynamicLights::own);
+  return light.group == 0 && (light.unclustered || (light.dynamic && settings.dynamic_lights == DynamicLights::own));
 }
 
 LightClusters select_light_clusters(std::span<const ClusterLight> lights, const ClusterSettings& settings,
                                     const Blocked& blocked) {
   return Selection(lights, settings, blocked).clusters();
+}
+
+ClusterCounter::ClusterCounter(std::vector<ClusterLight> lights, const ClusterSettings& settings)
+    : lights_(std::move(lights)), selection_(std::make_unique<Selection>(lights_, settings, Blocked())) {}
+ClusterCounter::ClusterCounter(ClusterCounter&&) noexcept = default;
+ClusterCounter::~ClusterCounter() = default;
+
+size_t ClusterCounter::count(float d_init_m, size_t most) {
+  return selection_->count(d_init_m, most);
 }
 
 }  // namespace chandelier::lights

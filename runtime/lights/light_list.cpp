@@ -3,6 +3,8 @@
 #include "lights/light_list.h"
 
 #include <algorithm>
+#include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -23,6 +25,12 @@ std::vector<uint32_t> lights_in_view(std::span<const pack::Light> lights, const 
   for (uint32_t i = 0; i < lights.size(); ++i)
     if (is_directional(lights[i]) || intersects(planes, lights[i].position_ws, lights[i].range_m)) in_view.push_back(i);
   return in_view;
+}
+
+std::vector<uint32_t> all_numbers(size_t count) {
+  std::vector<uint32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  return numbers;
 }
 
 frame::FrameLight frame_light(const pack::Light& light) {
@@ -61,7 +69,9 @@ lights::ClusterLight cluster_light(const pack::Light& light) {
           .axis_ws = light.direction_ws,
           .cone_cos = light.type == pack::LightType::spot ? light.outer_cone_cos : -1.0f,
           .dynamic = light.dynamic != 0,
-          .unclustered = light.unclustered != 0};
+          .unclustered = light.unclustered != 0,
+          .group = light.group,
+          .priority = light.priority};
 }
 
 // A directional light stands z_far away, wherever the receiver is. None ends nearer than another: the brightest is
@@ -155,6 +165,18 @@ std::vector<Member> clustered(std::span<const pack::Light> lights, std::span<con
   return members;
 }
 
+// Of the lights in view, as indices into them: whose map each light of a group shares.
+std::vector<uint32_t> group_centers(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
+                                    Recipe recipe, const Camera& camera) {
+  recipe.walls = WallTest::none;  // which keep no group apart
+  std::vector<uint32_t> grouped, centers(in_view.size());
+  for (const uint32_t i : in_view)
+    if (lights[i].group != 0) grouped.push_back(i);
+  for (const Member& m : clustered(lights, grouped, recipe, camera, {}))
+    centers[index_in(in_view, m.light)] = index_in(in_view, m.center);
+  return centers;
+}
+
 // What error-driven selection makes of the same lights in view.
 std::vector<Member> members_by_error(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
                                      std::vector<Member> clusters, const Recipe& recipe, const SampledView& view,
@@ -164,7 +186,8 @@ std::vector<Member> members_by_error(std::span<const pack::Light> lights, std::s
   for (const Member& m : clusters)
     of_clusters.push_back({index_in(in_view, m.light), index_in(in_view, m.center), m.filter_radius_m});
 
-  const std::vector<MapMember> chosen = by_error.select(in_view, of_clusters, view, recipe);
+  const std::vector<MapMember> chosen =
+      by_error.select(in_view, of_clusters, group_centers(lights, in_view, recipe, view.camera), view, recipe);
   std::vector<float> range_m(in_view.size(), 0.0f);  // LightCluster §3.1.3: C_att
   for (const MapMember& m : chosen) {
     const pack::Light& light = lights[in_view[m.light]];
@@ -243,7 +266,7 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
   };
   one_each(aids.previous_centers, "previous centres");
   one_each(aids.centers, "centres");
-  const auto in_view = lights_in_view(lights, camera, aspect);
+  const auto in_view = aids.out_of_view ? all_numbers(lights.size()) : lights_in_view(lights, camera, aspect);
   const bool has_limits = recipe.select == Select::error_driven && (recipe.max_maps || recipe.max_rmse);
   std::vector<Member> members = recipe.select == Select::per_light ? one_map_each(lights, in_view)
                                 : has_limits                       ? std::vector<Member>()
@@ -276,6 +299,37 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
   return list;
 }
 
+bool group_shares(std::span<const pack::Light> lights, const LightList& list) {
+  for (size_t i = 0; i < list.lights.size(); ++i)
+    if (list.center[i] != list.pack_light[i] && lights[list.pack_light[i]].group != 0) return true;
+  return false;
+}
+
+MapCounter::MapCounter(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
+                       bool out_of_view) {
+  std::vector<lights::ClusterLight> near, far;
+  std::vector<uint64_t> groups;  // of the two kinds
+  for (const uint32_t i : out_of_view ? all_numbers(lights.size()) : lights_in_view(lights, camera, aspect)) {
+    const bool directional = is_directional(lights[i]);
+    (directional ? far : near)
+        .push_back(directional ? far_cluster_light(lights[i], recipe.z_far_m) : cluster_light(lights[i]));
+    if (lights[i].group != 0) groups.push_back(uint64_t{directional} << 32 | lights[i].group);
+  }
+  std::sort(groups.begin(), groups.end());
+  group_shares_ = std::adjacent_find(groups.begin(), groups.end()) != groups.end();
+  in_view_ = near.size() + far.size();
+  lights::ClusterSettings settings = cluster_settings(recipe, camera);
+  counters_.emplace_back(std::move(near), settings);
+  settings.scaling = DistanceScaling::none;
+  counters_.emplace_back(std::move(far), settings);
+}
+
+size_t MapCounter::count(float d_init_m, size_t most) {
+  size_t maps = 0;
+  for (lights::ClusterCounter& counter : counters_) maps += counter.count(d_init_m, most);
+  return maps;
+}
+
 std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count) {
   std::vector<uint32_t> centers(light_count, pack::none);
   std::vector<float> largest(light_count, 0.0f);
@@ -285,6 +339,27 @@ std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light
     centers[list.pack_light[i]] = list.center[i];
   }
   return centers;
+}
+
+std::vector<MapMeasures> measure_maps(std::span<const pack::Light> lights, const LightList& list, const Recipe& recipe,
+                                      const Camera& camera) {
+  const lights::ClusterSettings settings = cluster_settings(recipe, camera);
+  const auto placed = [&](uint32_t light) {
+    return is_directional(lights[light]) ? far_cluster_light(lights[light], recipe.z_far_m)
+                                         : cluster_light(lights[light]);
+  };
+  std::vector<MapMeasures> measures;
+  for (const frame::ShadowMap& map : list.maps) {
+    const glm::vec3 center_ws = placed(list.center[map.first_light]).position_ws;
+    MapMeasures of_map{map.is_directional ? recipe.d_init_m : lights::scaled_d_min(settings, center_ws), 0.0f};
+    for (uint32_t i = map.first_light; i < map.first_light + map.light_count; ++i) {
+      const double distance_m = lights::metric_distance_m(placed(list.pack_light[i]), center_ws);
+      of_map.spread_m = std::max(of_map.spread_m,
+                                 static_cast<float>(std::min(distance_m, double{std::numeric_limits<float>::max()})));
+    }
+    measures.push_back(of_map);
+  }
+  return measures;
 }
 
 double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& camera, float aspect,

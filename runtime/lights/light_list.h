@@ -8,6 +8,7 @@
 #include "frame/camera.h"
 #include "frame/recipe.h"
 #include "frame_schema.h"
+#include "lights/light_clusters.h"
 #include "lights/surroundings.h"
 #include "pack_schema.h"
 
@@ -37,6 +38,7 @@ struct SelectAids {
   /// For each light the number of the light whose map it shall take; pack::none, or a directional light for another or
   /// the other way round, or the map that most of the light takes anyway: as selected. May be empty.
   std::span<const uint32_t> centers;
+  bool out_of_view = false;  // lights that the camera does not see are selected too
 };
 
 /// Point and spot lights may share a map, and directional lights among themselves. Throws std::invalid_argument where
@@ -44,10 +46,39 @@ struct SelectAids {
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
                         const SelectAids& aids = {});
 
+/// Counts the maps that select_lights() makes of the same, for one d_init after another: in less time than a list
+/// takes. For light clusters without walls, held or previous centres.
+class MapCounter {
+ public:
+  MapCounter(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
+             bool out_of_view);
+
+  size_t in_view() const { return in_view_; }  // lights
+  bool group_shares() const { return group_shares_; }
+  /// Any number above `most` where there are more.
+  size_t count(float d_init_m, size_t most);
+
+ private:
+  std::vector<lights::ClusterCounter> counters_;  // of directional lights, and of others
+  size_t in_view_ = 0;
+  bool group_shares_ = false;
+};
+/// Is any map of the list shared by lights of a group?
+bool group_shares(std::span<const pack::Light> lights, const LightList& list);
+
 /// Expected RMSE of the shown picture against one hard shadow map for each light, of what select_lights() made of the
 /// same recipe, camera and aids: estimated_rmse().
 double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& camera, float aspect,
                      const SelectAids& aids);
+
+/// What LightCluster says of a map's lights, whether or not the recipe clustered them.
+struct MapMeasures {
+  float d_min_m;   // of the centre
+  float spread_m;  // metric distance of the farthest light
+};
+/// One for each of `list.maps`. `list` is of the same lights, recipe and camera.
+std::vector<MapMeasures> measure_maps(std::span<const pack::Light> lights, const LightList& list, const Recipe& recipe,
+                                      const Camera& camera);
 
 /// Of `light_count` lights of the pack the one whose map each takes, or takes the largest share of; pack::none where it
 /// is not in view.

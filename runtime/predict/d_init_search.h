@@ -18,12 +18,19 @@ struct Budget {
   bool is_given() const { return max_shadow_maps || max_shadow_bytes || max_error; }
 };
 
+/// Its maps and bytes; what error to expect takes more than these counters.
+bool keeps(const FrameStats& stats, const Budget& budget);
+
 struct BudgetedPlan {
   Recipe recipe;             // as asked for, but d_init_m, or max_maps and max_rmse of error-driven selection
   bool keeps_budget = true;  // false where even the fewest maps that can be are too many
   std::optional<double> expected_rmse;  // where max_error is given: above it where maps or bytes do not allow less
   Prediction prediction;                // of that recipe; draws and triangles are 0
 };
+
+/// A d_init up to which there are at least as many shadow maps as with this one, by light clusters without walls and
+/// stability (README.md of this folder); 0 where the recipe is another.
+float as_many_maps_up_to(const Recipe& recipe, float d_init_m);
 
 /// With max_error the largest d_init, which is the fewest maps, that is expected to keep it; where that is more than
 /// the budget of maps and bytes, or without max_error, the smallest d_init that keeps these. README.md of this folder

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "shadows/cull/count_casters.h"
-#include "shadows/store/cube_array.h"
+#include "shadows/store/cube_bytes.h"
 
 namespace chandelier {
 namespace {

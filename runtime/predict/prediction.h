@@ -21,6 +21,8 @@ class Predictor {
 
   /// Lights, shadow maps and views alone: cheap enough to try many settings. The counters of draws and triangles are 0.
   Prediction plan(const RenderSettings& settings);
+  /// Of shadow maps of plan().
+  ShadowMapCounter counter(const RenderSettings& settings) const { return {pack_.lights, settings}; }
   /// All counters of a frame.
   Prediction predict(const RenderSettings& settings);
   /// Of a frame planned with these settings: RMSE of the shown picture, 0 to 1, against one hard shadow map for each

@@ -7,6 +7,7 @@
 
 #include "gpu/pipelines.h"
 #include "pack_file.h"
+#include "scene/bounds.h"
 
 namespace chandelier {
 
@@ -15,11 +16,6 @@ struct MaterialRun {
   uint32_t material;
   uint32_t first;
   uint32_t count;
-};
-
-struct Bounds {
-  glm::vec3 min_ws{0.0f};
-  glm::vec3 max_ws{0.0f};
 };
 
 struct GpuScene {

@@ -18,6 +18,7 @@ GOOD = [
     {"dynamic": True}, {"dynamic": False}, {"cluster": False}, {"cluster": True},
     {"power_w": 0}, {"power_w": 60}, {"power_w": 1e12}, {"power_w": 0.5},
     {"range_m": 1e-12}, {"range_m": 3e38}, {"range_m": 7},
+    {"group": ""}, {"group": "lamp"}, {"group": "Leuchter über dem Tisch"},
     {"priority": 200, "dynamic": False, "cluster": False, "power_w": 60, "range_m": 12.5},
 ]
 BAD = [  # and the key that both name
@@ -30,6 +31,7 @@ BAD = [  # and the key that both name
     ({"power_w": False}, "power_w"),
     ({"range_m": 0}, "range_m"), ({"range_m": -3}, "range_m"), ({"range_m": 4e38}, "range_m"),
     ({"range_m": []}, "range_m"),
+    ({"group": 3}, "group"), ({"group": None}, "group"), ({"group": ["a"]}, "group"),
     ([], None), (7, None), ("priority", None), (None, None), (True, None),
 ]
 UNKNOWN = [{"Priority": 1}, {"rang_m": 5, "priority": 3}, {"range": 5}, {"": 0}]

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bake/lights.h"
 #include "gltf_builder.h"
 
 namespace chandelier::baker::test {
@@ -98,6 +99,7 @@ TEST(Light, IsOfUsualPriorityAndStaticAndClusteredUnlessItsAuthorSaysOtherwise) 
   EXPECT_EQ(light.priority, 128u);
   EXPECT_EQ(light.dynamic, 0u);
   EXPECT_EQ(light.unclustered, 0u);
+  EXPECT_EQ(light.group, 0u);
   EXPECT_EQ(light.node, pack::none);
 }
 
@@ -115,6 +117,29 @@ TEST(Light, TakesItsAuthorsWordsFromExtrasTheNodesFirst) {
   EXPECT_EQ(light.unclustered, 1u);
   EXPECT_EQ(light.range_m, 3);
   EXPECT_EQ(light.range_source, pack::RangeSource::authored);
+}
+
+TEST(Light, OfGroupsOfTheSameNameHasTheirNumber) {
+  Scene scene;
+  for (const char* group : {"", "hall", "stage", "", "hall", "hall"}) scene.lights.push_back({.group = group});
+  pack::Contents pack;
+  Strings strings(pack.strings);
+  make_lights(scene, 0.05f, strings, pack);
+  std::vector<std::uint32_t> groups;
+  for (const pack::Light& light : pack.lights) groups.push_back(light.group);
+  EXPECT_EQ(groups, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 1}));
+}
+
+TEST(Light, LeavesItsGroupWhereItsNodeSaysSo) {
+  const auto group_of = [](const char* on_node) {
+    return with_light({{"type", "point"}, {"extras", {{"chandelier", {{"group", "hall"}}}}}},
+                      {{"extras", {{"chandelier", {{"group", on_node}}}}}})
+        .import()
+        .lights.at(0)
+        .group;
+  };
+  EXPECT_EQ(group_of("stage"), "stage");
+  EXPECT_EQ(group_of(""), "");
 }
 
 TEST(Light, HasBoundsAroundWhatItReaches) {

@@ -90,6 +90,67 @@ TEST(Budget, OfBytesIsThatOfMaps) {
   EXPECT_LE(both.prediction.stats.shadow_maps, 4u);
 }
 
+// Points, spots, suns and groups at all distances.
+pack::Contents mixed_lights(uint32_t seed) {
+  pack::Contents pack = lights_in_a_box(5 + seed % 60, seed);
+  std::mt19937 random(seed);
+  for (pack::Light& light : pack.lights) {
+    const float angle = static_cast<float>(random() % 628) * 0.01f;
+    light.direction_ws = {std::cos(angle), std::sin(angle), 0.0f};
+    light.intensity = 1.0f;
+    light.position_ws *= 1.0f + static_cast<float>(random() % 4);
+    if (random() % 8 == 0) light.group = 1 + random() % 2;
+    if (random() % 9 == 0) light.type = pack::LightType::directional;
+    if (light.type == pack::LightType::directional || random() % 2 == 0) continue;
+    light.type = pack::LightType::spot;
+    light.outer_cone_cos = 0.7f;
+  }
+  return pack;
+}
+
+RenderSettings mixed_settings(uint32_t seed) {
+  RenderSettings settings = clustered(static_cast<DistanceScaling>(seed % 3));
+  settings.recipe.reference_share = seed % 4 == 0 ? 2.0f : 0.85f;
+  settings.recipe.z_far_m = 5.0f + static_cast<float>(seed % 50);
+  settings.lights_out_of_view = seed % 5 == 0;
+  return settings;
+}
+
+TEST(Budget, CountsTheMapsOfAPlan) {
+  for (uint32_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    const pack::Contents pack = mixed_lights(seed);
+    Predictor predictor(pack::view_of(pack));
+    RenderSettings settings = mixed_settings(seed);
+    ShadowMapCounter counter = predictor.counter(settings);
+    for (const float d_init_m : {0.0f, 0.1f, 0.7f, 2.0f, 9.0f, 70.0f}) {
+      settings.recipe.d_init_m = d_init_m;
+      const uint64_t maps = predictor.plan(settings).stats.shadow_maps;
+      EXPECT_EQ(counter.count(d_init_m, 1000), maps);
+      if (maps > 0) EXPECT_GT(counter.count(d_init_m, maps - 1), maps - 1);
+      RenderSettings smaller = settings;
+      for (const float part : {1.0f, 0.9f, 0.5f}) {
+        smaller.recipe.d_init_m = part * as_many_maps_up_to(settings.recipe, d_init_m);
+        EXPECT_GE(predictor.plan(smaller).stats.shadow_maps, maps) << d_init_m;
+      }
+    }
+  }
+}
+
+// What is found by halving and counting is what looking at one d_init after another finds, from 0 on.
+TEST(Budget, IsKeptByTheFirstDInitOfAllThatKeepsIt) {
+  for (uint32_t seed = 0; seed < 150; ++seed) {
+    SCOPED_TRACE(seed);
+    const pack::Contents pack = mixed_lights(seed);
+    Predictor predictor(pack::view_of(pack));
+    RenderSettings settings = mixed_settings(seed);
+    const Budget budget{.max_shadow_maps = 1 + seed % 23};
+    const BudgetedPlan plan = choose_d_init(predictor, settings, budget);
+    settings.centers.assign(pack.lights.size(), pack::none);  // holds none, but is not counted any more
+    EXPECT_EQ(choose_d_init(predictor, settings, budget).recipe.d_init_m, plan.recipe.d_init_m);
+  }
+}
+
 TEST(Budget, SaysWhereNoClusterKeepsIt) {
   pack::Contents pack = lights_in_a_box(3, 4);
   for (pack::Light& light : pack.lights) light.range_m = 50;
@@ -202,6 +263,21 @@ TEST(Budget, IsWhatSelectionByErrorKeeps) {
   const BudgetedPlan none = keep_budget(predictor, settings, {.max_shadow_bytes = 1});
   EXPECT_FALSE(none.keeps_budget);
   EXPECT_EQ(none.prediction.stats.shadow_maps, 1u);
+}
+
+// The reference would give each light of a group a map of its own.
+TEST(Prediction, TheReferencesPathIsNotTakenWhereAGroupSharesAMap) {
+  pack::Contents pack = lights_in_a_box(20, 6);
+  const pack::View view = pack::view_of(pack);
+  Predictor predictor(view);
+  RenderSettings settings = clustered(DistanceScaling::grow);
+  settings.recipe.d_init_m = 0.0f;
+  EXPECT_EQ(predictor.plan(settings).stats.reference_path, 1u);
+  pack.lights[3].group = pack.lights[17].group = 1;
+  const FrameStats stats = predictor.plan(settings).stats;
+  EXPECT_EQ(stats.reference_path, 0u);
+  EXPECT_EQ(stats.shadow_maps, 19u);
+  EXPECT_EQ(stats.centers[3], stats.centers[17]);
 }
 
 TEST(Prediction, CountsLightsMapsAndViews) {

@@ -23,14 +23,16 @@ struct BruteForceSelection {
     return metric_distance_m(lights[light], lights[center].position_ws);
   }
 
+  bool goes_before(uint32_t a, uint32_t b) const {
+    if (was_center(a) != was_center(b)) return was_center(a);
+    if (lights[a].priority != lights[b].priority) return lights[a].priority > lights[b].priority;
+    return lights[a].range_m > lights[b].range_m;
+  }
   std::vector<uint32_t> order() const {
     std::vector<uint32_t> order;
     for (uint32_t light = 0; light < lights.size(); ++light)
-      if (!has_own_center(lights[light], settings)) order.push_back(light);
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-      if (was_center(a) != was_center(b)) return was_center(a);
-      return lights[a].range_m > lights[b].range_m;
-    });
+      if (lights[light].group == 0 && !has_own_center(lights[light], settings)) order.push_back(light);
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return goes_before(a, b); });
     return order;
   }
 
@@ -45,7 +47,15 @@ struct BruteForceSelection {
     return false;
   }
 
+  uint32_t center_of_group(uint32_t group) const {
+    uint32_t first = no_center;
+    for (uint32_t light = 0; light < lights.size(); ++light)
+      if (lights[light].group == group && (first == no_center || goes_before(light, first))) first = light;
+    return first;
+  }
+
   uint32_t center_of(uint32_t light) const {
+    if (lights[light].group != 0) return center_of_group(lights[light].group);
     if (has_own_center(lights[light], settings)) return light;
     uint32_t nearest = no_center;
     double least = 0.0;

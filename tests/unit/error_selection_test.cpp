@@ -194,6 +194,27 @@ TEST(ErrorLadderTest, AnUnclusteredLightKeepsItsMapForItself) {
   for (const MapMember& m : ladder.with_at_most(1)) EXPECT_EQ(m.light == 1, m.center == 1);
 }
 
+TEST(ErrorDrivenTest, AGroupSharesOneMapAmongItself) {
+  test::Scene scene = divided_floor();
+  scene.lights[0].group = scene.lights[3].group = 1;  // on both sides
+  const Sampled s(scene);
+  const ErrorLadder ladder(*s.samples, lights::DynamicLights::cluster, std::vector<uint32_t>{3, 1, 2, 3});
+  EXPECT_EQ(ladder.fewest_maps(), 2u);
+  EXPECT_LE(centers_of(ladder.with_at_most(4)).size(), 3u);
+  for (const uint32_t maps : {2, 3, 4})
+    for (const MapMember& m : ladder.with_at_most(maps)) EXPECT_EQ(m.light == 0 || m.light == 3, m.center == 3);
+
+  Surroundings surroundings(s.pack.view());
+  Recipe recipe;
+  recipe.select = Select::error_driven;
+  const LightList list =
+      select_lights(s.pack.view().lights, recipe, from_above(), 16.0f / 9.0f, {.surroundings = &surroundings});
+  const std::vector<uint32_t> centers = centers_of_pack_lights(list, 4);
+  EXPECT_EQ(centers[0], 0u);
+  EXPECT_EQ(centers[3], 0u);
+  EXPECT_EQ(std::count(centers.begin(), centers.end(), 0u), 2);
+}
+
 TEST(ErrorLadderTest, DirectionalLightsShareAmongThemselves) {
   test::Scene scene = divided_floor();
   scene.lights.push_back(test::directional_light({0, -1, 0.1f}, 2));

@@ -145,6 +145,34 @@ TEST(LightClustersTest, ALightWithACenterOfItsOwnJoinsNoneAndNoneJoinsIt) {
   EXPECT_EQ(result.clusters[2].range_m, 8.0f);
 }
 
+// However far apart, whatever else they are and whatever lies between; and nobody joins them, however near.
+TEST(LightClustersTest, LightsOfAGroupShareOneMapAmongThemselves) {
+  ClusterLight lights[]{{{0, 0, 0}, 2}, {{0.1f, 0, 0}, 3}, {{50, 0, 0}, 5}, {{50.1f, 0, 0}, 9}, {{99, 0, 0}, 4}};
+  lights[1].group = lights[2].group = lights[4].group = 7;
+  lights[2].unclustered = lights[4].dynamic = true;
+  const ClusterSettings settings{
+      .d_init_m = 1.0f, .scaling = DistanceScaling::none, .dynamic_lights = DynamicLights::own};
+  const auto result = select_light_clusters(lights, settings, [](uint32_t, uint32_t) { return true; });
+  EXPECT_EQ(result.cluster_of_light, (std::vector<uint32_t>{0, 1, 1, 2, 1}));
+  EXPECT_EQ(result.clusters[1].center, 2u);  // the farthest reaching of the group
+  EXPECT_EQ(result.clusters[1].light_count, 3u);
+  EXPECT_FLOAT_EQ(result.clusters[1].range_m, 49.0f + 4.0f);
+  EXPECT_FLOAT_EQ(result.clusters[1].spread_m, 49.9f);
+  lights[4].priority = 200;
+  EXPECT_EQ(select_light_clusters(lights, settings).clusters[2].center, 4u);
+}
+
+TEST(LightClustersTest, LightsOfHigherPriorityAreSelectedFirst) {
+  ClusterLight lights[]{{{0, 0, 0}, 9}, {{0.4f, 0, 0}, 1}, {{0.8f, 0, 0}, 2}};
+  const ClusterSettings settings{.d_init_m = 0.5f, .scaling = DistanceScaling::none};
+  EXPECT_EQ(select_light_clusters(lights, settings).clusters.size(), 2u);
+  lights[1].priority = 129;
+  const auto result = select_light_clusters(lights, settings);
+  EXPECT_EQ(result.clusters.size(), 1u);
+  EXPECT_EQ(result.clusters[0].center, 1u);
+  EXPECT_FLOAT_EQ(result.clusters[0].range_m, 9.4f);
+}
+
 // A wall between 0 and the others: whoever is near 0 alone becomes a centre, and joins no blocked one.
 TEST(LightClustersTest, BlockedPairsAreInfinitelyFarApart) {
   const ClusterLight lights[]{{{0, 0, 0}, 9}, {{0.2f, 0, 0}, 8}, {{0.4f, 0, 0}, 7}, {{-0.3f, 0, 0}, 1}};

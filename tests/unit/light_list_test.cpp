@@ -82,6 +82,17 @@ TEST(LightListTest, DynamicAndUnclusteredLightsKeepMapsOfTheirOwn) {
   EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f).center, (std::vector<uint32_t>{0, 0, 2}));
 }
 
+TEST(LightListTest, AGroupIsOfDirectionalLightsOrOfOthersAndOfThoseInView) {
+  pack::Light lights[]{light_at({0, 0, -4}, 1), light_at({0, 0, 90}, 8), light_at({0, 0, -40}, 2),
+                       sun({0, -1, 0}, 1),      sun({1, -1, 0}, 2),      light_at({0, 0, -4}, 1)};
+  for (uint32_t i = 0; i < 5; ++i) lights[i].group = 1;
+  const Recipe recipe = clustering(0.5f);
+  const LightList list = select_lights(lights, recipe, {}, 1.0f);
+  EXPECT_EQ(centers_of_pack_lights(list, 6), (std::vector<uint32_t>{2, pack::none, 2, 4, 4, 5}));
+  EXPECT_EQ(list.maps[0].range_m, 37.0f);                          // of 0, seen from 2
+  EXPECT_EQ(select_lights(lights, {}, {}, 1.0f).maps.size(), 5u);  // one map per light is what the recipe asks for
+}
+
 // The first of two equals is the centre, unless the other was; numbers are those of the pack, not of what is in view.
 TEST(LightListTest, StabilityClingsToThePreviousFramesCenters) {
   const pack::Light lights[]{light_at({0, 0, 90}, 1), light_at({0, 0, -4}, 2), light_at({0, 0, -4.2f}, 2)};

@@ -61,6 +61,8 @@ ClusterLight random_light(Random& random, Layout layout) {
   }
   light.dynamic = random.once_in(6);
   light.unclustered = random.once_in(12);
+  if (random.once_in(8)) light.group = 1 + random.below(4);
+  if (random.once_in(5)) light.priority = 64 * random.below(4);
   return light;
 }
 
@@ -127,7 +129,7 @@ void expect_equal(const LightClusters& a, const LightClusters& b, uint32_t seed)
 
 // How many lights of all kinds there were, so that a generator gone astray is seen.
 struct Met {
-  uint32_t clusters = 0, members = 0, blocked = 0, clinging = 0;
+  uint32_t clusters = 0, members = 0, grouped = 0, blocked = 0, clinging = 0;
 };
 
 void compare_with_brute_force(uint32_t seed, uint32_t most_lights, Met& met) {
@@ -137,6 +139,7 @@ void compare_with_brute_force(uint32_t seed, uint32_t most_lights, Met& met) {
   expect_equal(select_light_clusters(drawn.lights, drawn.settings, drawn.blocked), expected, seed);
   met.clusters += static_cast<uint32_t>(expected.clusters.size());
   met.members += static_cast<uint32_t>(drawn.lights.size() - expected.clusters.size());
+  for (const ClusterLight& light : drawn.lights) met.grouped += light.group != 0;
   met.blocked += drawn.blocked ? 1 : 0;
   met.clinging += drawn.previous_centers.empty() ? 0 : 1;
 }
@@ -146,6 +149,7 @@ TEST(LightSelectionTest, TenThousandSetsEqualBruteForce) {
   for (uint32_t seed = 0; seed < 10000 && !HasFatalFailure(); ++seed) compare_with_brute_force(seed, 100, met);
   EXPECT_GT(met.clusters, 100000u);
   EXPECT_GT(met.members, 100000u);
+  EXPECT_GT(met.grouped, 20000u);
   EXPECT_GT(met.blocked, 2000u);
   EXPECT_GT(met.clinging, 2000u);
 }

@@ -16,6 +16,8 @@ const Breach breaches[] = {
     {"NegativeRadius", [](Contents& c) { c.lights[0].bounds_radius_m = -1; },
      "lights[0].bounds_radius_m: -1 is below 0"},
     {"Priority", [](Contents& c) { c.lights[0].priority = 256; }, "lights[0].priority: 256 is above 255"},
+    {"GroupLeftOut", [](Contents& c) { c.lights[2].group = 3; }, "lights[2].group: 3 comes after 1 groups"},
+    {"GroupsFromTwo", [](Contents& c) { c.lights[0].group = 2; }, "lights[0].group: 2 comes after 0 groups"},
     {"VoxelOfTheSun", [](Contents& c) { c.lights[2].voxel = 0; }, "lights[2].voxel: a directional light has none"},
     {"VoxelBeyondTheGrid", [](Contents& c) { c.lights[0].voxel = 2; },
      "lights[0].voxel: 2 is not below the 2 voxel_cells"},

@@ -84,6 +84,7 @@ void add_lights(Contents& c) {
   point.bounds_center_ws = point.position_ws;
   point.bounds_radius_m = 7;
   point.priority = 128;
+  point.group = 1;
   point.name = add_string(c, "bulb");
   Light spot = point;
   spot.position_ws = {1, 0.5f, -0.125f};
@@ -104,6 +105,7 @@ void add_lights(Contents& c) {
   sun.intensity = 1000;
   sun.range_source = RangeSource::unbounded;
   sun.dynamic = sun.unclustered = 1;
+  sun.group = 0;
   sun.node = 0;
   sun.name = add_string(c, "sun");
   c.lights = {point, spot, sun};
@@ -209,7 +211,8 @@ Contents sheet(std::uint32_t side) {
   for (std::uint32_t y = 0; y + 1 < side; ++y) {
     for (std::uint32_t x = 0; x + 1 < side; ++x) {
       const std::uint32_t i = y * side + x;
-      const std::uint32_t turned = ((x * 2654435761u ^ y * 40503u) * 2246822519u) >> 31;  // which diagonal: without a pattern
+      const std::uint32_t turned =
+          ((x * 2654435761u ^ y * 40503u) * 2246822519u) >> 31;  // which diagonal: without a pattern
       const std::uint32_t a = turned ? i + side : i, b = turned ? i : i + 1;
       const std::uint32_t across = turned ? i + side + 1 : i + side, d = turned ? i + 1 : i + side + 1;
       for (const std::uint32_t corner : {a, b, across, across, b, d}) c.indices.push_back({corner});

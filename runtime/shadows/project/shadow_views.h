@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lights/light_list.h"
-#include "scene/gpu_scene.h"
+#include "scene/bounds.h"
 
 namespace chandelier {
 

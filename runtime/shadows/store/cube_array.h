@@ -4,6 +4,7 @@
 #pragma once
 
 #include "gpu/resources.h"
+#include "shadows/store/cube_bytes.h"
 
 namespace chandelier {
 
@@ -13,11 +14,6 @@ struct CubeArray {
   uint32_t face_size_px = 0;
   uint32_t cube_count = 0;
 };
-
-/// Depth of one cube.
-constexpr uint64_t cube_bytes(uint32_t face_size_px) {
-  return uint64_t{6} * 4 * face_size_px * face_size_px;
-}
 
 /// How many cubes the pool may have: at least one.
 uint32_t cubes_within(const gpu::Device& device, uint32_t face_size_px, uint64_t budget_bytes);
