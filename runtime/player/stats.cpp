@@ -85,6 +85,12 @@ Json shared_maps_json(const std::vector<SharedMap>& shared) {
   return json;
 }
 
+Json centers_json(const std::vector<uint32_t>& centers) {
+  Json json = Json::array();
+  for (const uint32_t center : centers) json.push_back(center == pack::none ? Json() : Json(center));
+  return json;
+}
+
 }  // namespace
 
 std::span<const Counter> counters() {
@@ -133,7 +139,8 @@ Json prediction_json(const Run& run) {
           {"recipe", recipe_json(run.settings.recipe)},
           {"counters", counters_json(run.stats)},
           {"expected_rmse_shown", *run.expected_rmse},
-          {"lights_without_own_map", shared_maps_json(*run.shared_maps)}};
+          {"lights_without_own_map", shared_maps_json(*run.shared_maps)},
+          {"center_of_light", centers_json(run.stats.centers)}};
 }
 
 }  // namespace chandelier::player
