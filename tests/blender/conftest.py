@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The add-on's core is imported as a package of its own, since the add-on's __init__ needs Blender."""
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "blender_addon" / "chandelier"))
+collect_ignore_glob = ["in_blender/*"]
