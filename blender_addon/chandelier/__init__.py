@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Chandelier in Blender: one folder for 3.4 (add-on, by bl_info) and for 4.2 and later (extension, by its manifest)."""
+
+bl_info = {
+    "name": "Chandelier",
+    "author": "The Chandelier authors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "3D View > Sidebar > Chandelier",
+    "description": "Place hundreds of lights, see which share a shadow map and what that costs, bake and play",
+    "category": "Lighting",
+}
+
+from . import properties  # noqa: E402  (Blender reads bl_info without running this file)
+
+MODULES = (properties,)
+
+
+def register():
+    for module in MODULES:
+        module.register()
+
+
+def unregister():
+    for module in reversed(MODULES):
+        module.unregister()

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Chandelier keeps in a .blend: on lights, what schemas/light_extras.schema.json lets a glTF light carry; on scenes, how
+it is going to be played. Range, radius and power are Blender's own fields."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+# A linked light's data can be changed here where it is overridden.
+OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
+
+
+class LightSettings(bpy.types.PropertyGroup):
+    priority: IntProperty(
+        name="Priority", description="Who keeps a shadow map of its own when the budget ends: higher first",
+        default=128, min=0, max=255, override=OVERRIDABLE)
+    dynamic: BoolProperty(
+        name="Dynamic", description="Something other than this file's animation will move the light or change it",
+        default=False, override=OVERRIDABLE)
+    cluster: BoolProperty(
+        name="Cluster", description="The light may share a shadow map; off: it gets one of its own",
+        default=True, override=OVERRIDABLE)
+    group: StringProperty(
+        name="Group", description="Lights with the same group share one shadow map, and with no other light. Empty: none",
+        default="", override=OVERRIDABLE)
+
+
+class ObjectSettings(bpy.types.PropertyGroup):
+    hidden_by_solo: BoolProperty(
+        name="Hidden by Solo", description="Solo hid this light, and shows it again when it ends", default=False)
+
+
+class SceneSettings(bpy.types.PropertyGroup):
+    """Names and limits are chandelier-play's."""
+    d_init: FloatProperty(
+        name="Distance", description="Lights closer than this to a cluster's centre share its shadow map, at the camera; "
+        "0: each light has its own", default=0.5, min=0, soft_max=10, unit="LENGTH")
+    distance_scaling: EnumProperty(
+        name="Farther Away", description="How the distance follows the distance to the camera", default="grow", items=(
+            ("grow", "Grows", "Lights that are far from the camera share more: times 1 + |C| / z_far"),
+            ("paper-formula", "Shrinks", "As LightCluster's formula is printed: times 1 - |C| / z_far"),
+            ("none", "Stays", "The same everywhere: nothing changes when the camera moves")))
+    z_far: FloatProperty(
+        name="Far Distance", description="Distance from the camera that scales it by one", default=30, min=0.001, soft_max=1000,
+        unit="LENGTH")
+    face_size: IntProperty(
+        name="Face Size", description="Width of one face of a cube shadow map, texels", default=512, min=16, max=16384)
+    filter: EnumProperty(name="Filter", description="How shadow maps are read", default="pcss", items=(
+        ("pcss", "Soft (PCSS)", "Shadows soften with distance; a cluster stands for an area light"),
+        ("pcf", "Smoothed (PCF)", "Edges are smoothed by the same width everywhere"),
+        ("hard", "Hard", "One comparison; only for lights that share no shadow map: with distance 0")))
+    budget_maps: IntProperty(
+        name="Maps", description="Most shadow maps of a frame; the distance is chosen to meet it. 0: no limit", default=0, min=0)
+    budget_mib: IntProperty(
+        name="MiB", description="Most depth of all shadow maps of a frame, MiB; the distance is chosen to meet it. 0: no limit",
+        default=0, min=0)
+    view: EnumProperty(name="Seen From", description="Whose distance to the lights counts", default="camera", items=(
+        ("camera", "Scene Camera", "The scene's camera, as chandelier-play starts"),
+        ("viewport", "Viewport", "The 3D view that is drawn")))
+    pack_path: StringProperty(
+        name="Pack", description="The pack to bake; empty: beside the .blend, with its name", default="", subtype="FILE_PATH")
+    bake_on_save: BoolProperty(
+        name="Bake on Save", description="Export and bake whenever the .blend is saved", default=False)
+
+
+OWNERS = ((bpy.types.Light, LightSettings), (bpy.types.Object, ObjectSettings), (bpy.types.Scene, SceneSettings))
+
+
+def register():
+    for owner, settings in OWNERS:
+        bpy.utils.register_class(settings)
+        overridable = OVERRIDABLE if owner is bpy.types.Light else set()
+        owner.chandelier = PointerProperty(type=settings, override=overridable)
+
+
+def unregister():
+    for owner, settings in reversed(OWNERS):
+        del owner.chandelier
+        bpy.utils.unregister_class(settings)

@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Packs the add-on into one zip that Blender 3.4 installs as an add-on and 4.2 and later as an extension.
+
+The zip holds the folder itself: 3.4 needs it, and the later ones take it. What was built and is named as a library or
+program goes into its bin/ folder, so that an add-on can carry its own tools. Same files, same bytes.
+"""
+
+import argparse
+import pathlib
+import zipfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ADDON = HERE / "chandelier"
+SUFFIXES = {".py", ".toml"}
+OLDEST = (1980, 1, 1, 0, 0, 0)  # what a zip can date; the same in each
+
+
+def files_of(addon, bundled):
+    """Name in the zip -> path."""
+    files = {f"{addon.name}/{path.relative_to(addon).as_posix()}": path
+             for path in addon.rglob("*") if path.suffix in SUFFIXES}
+    files[f"{addon.name}/LICENSE"] = HERE / "LICENSE"
+    files.update({f"{addon.name}/bin/{path.name}": path for path in bundled})
+    return files
+
+
+def write(target, bundled=()):
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, path in sorted(files_of(ADDON, bundled).items()):
+            entry = zipfile.ZipInfo(name, OLDEST)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            executable = "/bin/" in name
+            entry.external_attr = (0o755 if executable else 0o644) << 16
+            archive.writestr(entry, path.read_bytes())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=HERE.parent / "build" / "blender" / "chandelier.zip")
+    parser.add_argument("bundled", nargs="*", type=pathlib.Path, help="libraries and programs to carry along")
+    arguments = parser.parse_args()
+    missing = [path for path in arguments.bundled if not path.is_file()]
+    if missing:
+        parser.error(f"no such file: {missing[0]}")
+    write(arguments.output, arguments.bundled)
+    print(arguments.output)
+
+
+if __name__ == "__main__":
+    main()
