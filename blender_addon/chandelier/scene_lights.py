@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All lights that Blender evaluates, instances and linked ones too, into a LightTable.
+
+2,000 lights are read on each move of the mouse, so what Blender gives as a whole array is taken so, and a light's data is read
+again only when it may have changed."""
+
+import math
+
+import bpy
+import numpy as np
+
+from .core import light_table, photometry
+
+KINDS = {"POINT": photometry.POINT, "SPOT": photometry.SPOT, "SUN": photometry.DIRECTIONAL}
+HAS_EXPOSURE = "exposure" in bpy.types.Light.bl_rna.properties
+HAS_TEMPERATURE = "use_temperature" in bpy.types.Light.bl_rna.properties
+
+
+def emission_of(light):
+    """Watts and linear colour that Cycles gives a light: its own, times its exposure and temperature where Blender has them,
+    times the emission node that its surface ends in. What other nodes make of it is not seen here: see surprises."""
+    power_w, colour = light.energy, tuple(light.color)
+    if HAS_EXPOSURE:
+        power_w *= 2.0 ** light.exposure
+    if HAS_TEMPERATURE and light.use_temperature:
+        colour = tuple(a * b for a, b in zip(colour, light.temperature_color))
+    emission = emission_node(light) if light.use_nodes else None
+    if emission:
+        if not emission.inputs["Strength"].is_linked:
+            power_w *= emission.inputs["Strength"].default_value
+        if not emission.inputs["Color"].is_linked:
+            colour = tuple(a * b for a, b in zip(colour, emission.inputs["Color"].default_value))
+    return power_w, colour
+
+
+def emission_node(light):
+    """The emission node at a light's active output, if it is one."""
+    if not light.node_tree:
+        return None
+    output = next((node for node in light.node_tree.nodes if node.type == "OUTPUT_LIGHT" and node.is_active_output), None)
+    links = output.inputs["Surface"].links if output else ()
+    return links[0].from_node if links and links[0].from_node.type == "EMISSION" else None
+
+
+def record_of(light, groups):
+    """A light's row of light_table.DATA; None of one that glTF has not, or that is dark. `groups`: name -> number, grows."""
+    kind = KINDS.get(light.type)
+    if kind is None:
+        return None
+    power_w, colour = emission_of(light)
+    if power_w <= 0 or max(colour) <= 0:
+        return None
+    settings = light.chandelier
+    group = groups.setdefault(settings.group, len(groups)) if settings.group else light_table.NO_GROUP
+    bounded = light.use_custom_distance and kind != photometry.DIRECTIONAL
+    return light_table.record(
+        kind, power_w, colour, range_m=light.cutoff_distance if bounded else 0.0, radius_m=light.shadow_soft_size
+        if kind != photometry.DIRECTIONAL else 0.0, spot_outer_rad=light.spot_size / 2 if kind == photometry.SPOT else math.pi,
+        dynamic=settings.dynamic, cluster=settings.cluster, priority=settings.priority, group=group)
+
+
+def not_rendered():
+    """Full names of the objects of which every collection is left out of renders."""
+    hidden = set()
+    for collection in bpy.data.collections:
+        if collection.hide_render:
+            hidden.update((collection, *collection.children_recursive))
+    objects = {thing for collection in hidden for thing in collection.objects if thing.type == "LIGHT" or thing.is_instancer}
+    return {thing.name_full for thing in objects if all(collection in hidden for collection in thing.users_collection)}
+
+
+class LightReader:
+    """Keeps what was read, so that a light that moves costs one array. Whoever keeps a reader tells it of every update of the
+    depsgraph, and takes a new one after undo and after a file was read, when old pointers mean nothing."""
+
+    def __init__(self):
+        self.records, self.groups = {}, {}  # of each light's data, by its address
+        self.table, self.places, self.instances = None, [], 0
+
+    def note(self, depsgraph):
+        """Takes in what a depsgraph says it has updated. True where a table read before it is no longer right."""
+        moved = False
+        for update in depsgraph.updates:
+            thing = update.id
+            if isinstance(thing, bpy.types.Light):
+                self.records.pop(thing.as_pointer(), None)
+                self.table = None
+            elif isinstance(thing, bpy.types.NodeTree):
+                self.records.clear()
+                self.table = None
+            elif isinstance(thing, bpy.types.Object) and update.is_updated_transform and not update.is_updated_geometry:
+                moved = True
+            elif isinstance(thing, (bpy.types.Object, bpy.types.Collection, bpy.types.Scene)):
+                self.table = None
+        return moved or self.table is None
+
+    def read(self, depsgraph):
+        count = len(depsgraph.object_instances)
+        matrices = np.empty(count * 16, np.float32)
+        depsgraph.object_instances.foreach_get("matrix_world", matrices)
+        matrices = matrices.reshape(-1, 4, 4)
+        if self.table is None or count != self.instances:
+            self._read_all(depsgraph, matrices)
+            self.instances = count
+        else:
+            self.table = light_table.moved(self.table, matrices[self.places])
+        return self.table
+
+    def _read_all(self, depsgraph, matrices):
+        hidden = not_rendered()
+        records, names, owners = [], [], []
+        self.places = []
+        for place, instance in enumerate(depsgraph.object_instances):
+            thing = instance.object
+            if thing.type != "LIGHT" or thing.hide_render:
+                continue
+            record = self._record(thing.data)
+            name = owner = thing.name_full
+            if record is None or name in hidden:
+                continue
+            if instance.is_instance:
+                parent = instance.parent
+                owner = parent.name_full
+                name = f"{owner}/{name}"
+                if parent.hide_render or owner in hidden:
+                    continue
+            self.places.append(place)
+            records.append(record)
+            names.append(name)
+            owners.append(owner)
+        self.table = light_table.make_table(matrices[self.places], np.array(records, light_table.DATA), names, owners)
+
+    def _record(self, data):
+        pointer = data.as_pointer()
+        if pointer not in self.records:
+            self.records[pointer] = record_of(data, self.groups)
+        return self.records[pointer]
+
+
+def read(depsgraph):
+    return LightReader().read(depsgraph)
