@@ -11,9 +11,9 @@ bl_info = {
     "category": "Lighting",
 }
 
-from . import properties  # noqa: E402  (Blender reads bl_info without running this file)
+from . import place, properties  # noqa: E402  (Blender reads bl_info without running this file)
 
-MODULES = (properties,)
+MODULES = (properties, place)
 
 
 def register():

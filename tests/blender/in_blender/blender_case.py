@@ -47,6 +47,7 @@ class BlenderCase(unittest.TestCase):
         return self.add(name, data, location, collection)
 
     def select(self, *objects, active=None):
+        bpy.context.view_layer.update()
         for other in bpy.context.view_layer.objects:
             other.select_set(other in objects)
         bpy.context.view_layer.objects.active = active or (objects[0] if objects else None)
