@@ -11,9 +11,9 @@ bl_info = {
     "category": "Lighting",
 }
 
-from . import place, properties  # noqa: E402  (Blender reads bl_info without running this file)
+from . import edit, light_list, place, properties, surprises_ui  # noqa: E402  (Blender reads bl_info without running this file)
 
-MODULES = (properties, place)
+MODULES = (properties, place, edit, light_list, surprises_ui)
 
 
 def register():

@@ -3,7 +3,9 @@
 it is going to be played. Range, radius and power are Blender's own fields."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+from . import light_list
 
 # A linked light's data can be changed here where it is overridden.
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
@@ -56,16 +58,33 @@ class SceneSettings(bpy.types.PropertyGroup):
     view: EnumProperty(name="Seen From", description="Whose distance to the lights counts", default="camera", items=(
         ("camera", "Scene Camera", "The scene's camera, as chandelier-play starts"),
         ("viewport", "Viewport", "The 3D view that is drawn")))
+    active_light: IntProperty(
+        name="Light", description="The light that the list shows as active", default=-1, update=light_list.take_active,
+        options={"SKIP_SAVE"})
     pack_path: StringProperty(
         name="Pack", description="The pack to bake; empty: beside the .blend, with its name", default="", subtype="FILE_PATH")
     bake_on_save: BoolProperty(
         name="Bake on Save", description="Export and bake whenever the .blend is saved", default=False)
 
 
-OWNERS = ((bpy.types.Light, LightSettings), (bpy.types.Object, ObjectSettings), (bpy.types.Scene, SceneSettings))
+class Surprise(bpy.types.PropertyGroup):
+    """`name` is the light's."""
+    rule: StringProperty()
+    text: StringProperty()
+
+
+class SessionSettings(bpy.types.PropertyGroup):
+    """Of the running Blender; no file keeps it."""
+    surprises: CollectionProperty(type=Surprise)
+    has_looked: BoolProperty(description="Surprises were looked for")
+
+
+OWNERS = ((bpy.types.Light, LightSettings), (bpy.types.Object, ObjectSettings), (bpy.types.Scene, SceneSettings),
+          (bpy.types.WindowManager, SessionSettings))
 
 
 def register():
+    bpy.utils.register_class(Surprise)
     for owner, settings in OWNERS:
         bpy.utils.register_class(settings)
         overridable = OVERRIDABLE if owner is bpy.types.Light else set()
@@ -76,3 +95,4 @@ def unregister():
     for owner, settings in reversed(OWNERS):
         del owner.chandelier
         bpy.utils.unregister_class(settings)
+    bpy.utils.unregister_class(Surprise)

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What will surprise whoever bakes the scene, by name, before it does."""
+
+from dataclasses import dataclass
+from typing import Callable
+
+from . import photometry
+
+DEFAULT_THRESHOLD_LX = 0.05  # chandelier-bake's --range-threshold
+UNTOUCHED_POWERS_W = (10, 1000)  # of a new lamp in Blender, and of the one in its first scene
+
+
+@dataclass(frozen=True)
+class Light:
+    """A light as an artist left it."""
+    name: str
+    kind: str = "POINT"  # Blender's: POINT, SPOT, SUN, AREA
+    power_w: float = 60
+    white: bool = False
+    has_range: bool = True
+    users: int = 1  # objects that share its data
+    scale: tuple = (1, 1, 1)  # in the world
+    sheared: bool = False
+    casts_shadow: bool = True
+    own_nodes: bool = False  # its surface is more than an emission
+    inside: str = ""  # the mesh that it is in
+    hidden: bool = False  # in the viewport, but not from renders
+
+
+@dataclass(frozen=True)
+class Rule:
+    id: str
+    title: str
+    applies: Callable
+    text: Callable  # what follows a light's name
+    fix: str = ""  # the operator that mends it
+
+
+@dataclass(frozen=True)
+class Surprise:
+    rule: Rule
+    name: str
+    text: str
+
+
+def _is_scaled(light):
+    return light.sheared or any(abs(part - 1) > 1e-3 for part in light.scale)
+
+
+def _scaled_text(light):
+    if light.sheared:
+        return "is sheared by a parent, which glTF cannot say: it may end up elsewhere"
+    return f"is scaled by {' × '.join(f'{part:.3g}' for part in light.scale)}: glTF's lights have no size, and a spot's cone changes"
+
+
+def _range_text(light):
+    metres = photometry.range_of(photometry.intensity_of(photometry.POINT, light.power_w), DEFAULT_THRESHOLD_LX)
+    return f"has no range: the baker will end it {metres:.0f} m away, and its shadow map holds all that is nearer"
+
+
+RULES = (
+    Rule("area", "Area lights", lambda light: light.kind == "AREA",
+         lambda light: "is an area light, which glTF has not: it will be missing", "chandelier.convert_area"),
+    Rule("dark", "Without power", lambda light: light.power_w <= 0,
+         lambda light: f"has {light.power_w:g} W: it will be missing"),
+    Rule("hidden", "Hidden, but rendered", lambda light: light.hidden,
+         lambda light: "is hidden in the viewport but not from renders: it will be there, and the preview does not count it"),
+    Rule("scaled", "Scaled", _is_scaled, _scaled_text, "chandelier.unscale_lights"),
+    Rule("no_range", "Without range", lambda light: not light.has_range and light.kind in ("POINT", "SPOT") and light.power_w > 0,
+         _range_text, "chandelier.set_range"),
+    Rule("shared", "Shared data", lambda light: light.users > 1,
+         lambda light: f"shares its data with {light.users - 1} more: what changes for one changes for all",
+         "chandelier.make_single_user"),
+    Rule("default_power", "Untouched power",
+         lambda light: light.white and light.kind in ("POINT", "SPOT") and light.power_w in UNTOUCHED_POWERS_W,
+         lambda light: f"is white with {light.power_w:g} W, as Blender made it: was it ever set?"),
+    Rule("inside", "Inside a mesh", lambda light: bool(light.inside),
+         lambda light: f"is inside {light.inside}, which will keep its light"),
+    Rule("no_shadow", "Without shadow", lambda light: not light.casts_shadow,
+         lambda light: "casts no shadow here, and will in Chandelier"),
+    Rule("nodes", "Nodes", lambda light: light.own_nodes,
+         lambda light: "has nodes: only its power and colour, and those of an emission node, are exported"),
+)
+RULE_OF_ID = {rule.id: rule for rule in RULES}
+
+
+def surprises(lights):
+    """In the order of the rules, then of the lights."""
+    return [Surprise(rule, light.name, rule.text(light)) for rule in RULES for light in lights if rule.applies(light)]

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Looks for surprises in the scene, and mends those that can be."""
+
+import bpy
+import numpy as np
+from bpy.props import EnumProperty, FloatProperty, StringProperty
+from mathutils import Matrix, Vector
+
+from . import edit, scene_lights
+from .core import photometry, surprises
+
+WAYS = [Vector((x, y, z)).normalized() for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z]
+LAMP_M = 0.3  # of a double-sided mesh, only what is this near is taken for a lamp or wall that the light is stuck in
+
+
+def lights_with_matrices(context, depsgraph):
+    """Each light object once, with the matrix of where it is first seen."""
+    found = {}
+    for instance in depsgraph.object_instances:
+        if instance.object.type == "LIGHT":
+            found.setdefault(instance.object.original, instance.matrix_world.copy())
+    for thing in context.scene.objects:
+        if thing.type == "LIGHT":
+            found.setdefault(thing, thing.matrix_world.copy())
+    return {light: matrix for light, matrix in found.items() if not light.hide_render}
+
+
+def records_of(context):
+    depsgraph = context.evaluated_depsgraph_get()
+    lights = lights_with_matrices(context, depsgraph)
+    users = {}
+    for light in lights:
+        users[light.data] = users.get(light.data, 0) + 1
+    here = set(context.scene.objects)
+    return [record_of(context, depsgraph, light, matrix, users[light.data], light in here) for light, matrix in lights.items()]
+
+
+def record_of(context, depsgraph, light, matrix, users, here):
+    """`here`: the light is one of the scene's own objects."""
+    data = light.data
+    axes = np.array(matrix.to_3x3()).T
+    scale = tuple(float(length) for length in np.linalg.norm(axes, axis=1))
+    unit = axes / np.maximum(np.array(scale), 1e-12)[:, None]
+    leaves = scene_lights.emission_node(data) if data.use_nodes else None
+    return surprises.Light(
+        name=light.name, kind=data.type, power_w=scene_lights.emission_of(data)[0], white=tuple(data.color) == (1, 1, 1),
+        has_range=data.use_custom_distance, users=users, scale=scale,
+        sheared=bool(abs(unit @ unit.T - np.eye(3)).max() > 1e-3), casts_shadow=data.use_shadow,
+        own_nodes=data.use_nodes and (leaves is None or any(socket.is_linked for socket in leaves.inputs)),
+        inside="" if data.type == "SUN" else mesh_around(context.scene, depsgraph, matrix.translation),
+        hidden=here and not light.visible_get() and not light.chandelier.hidden_by_solo)
+
+
+def mesh_around(scene, depsgraph, point):
+    """The mesh whose back most rays from a point meet first; else nothing. Of a room, they meet the fronts."""
+    backs = []
+    for way in WAYS:
+        hit, place, normal, _, thing, _ = scene.ray_cast(depsgraph, point, way)
+        if hit and normal.dot(way) > 0 and ((place - point).length < LAMP_M or is_single_sided(thing)):
+            backs.append(thing.name)
+    return max(set(backs), key=backs.count) if len(backs) > len(WAYS) / 2 else ""
+
+
+def is_single_sided(thing):
+    materials = [slot.material for slot in thing.material_slots if slot.material]
+    return bool(materials) and all(material.use_backface_culling for material in materials)
+
+
+def find(context):
+    """Looks again and keeps what it finds for the panel."""
+    session = context.window_manager.chandelier
+    session.surprises.clear()
+    for surprise in surprises.surprises(records_of(context)):
+        item = session.surprises.add()
+        item.rule, item.name, item.text = surprise.rule.id, surprise.name, surprise.text
+    session.has_looked = True
+
+
+class CHANDELIER_OT_find_surprises(bpy.types.Operator):
+    """Look for lights that will not come out as they look here"""
+    bl_idname = "chandelier.find_surprises"
+    bl_label = "Look for Surprises"
+
+    def execute(self, context):
+        find(context)
+        self.report({"INFO"}, f"{len(context.window_manager.chandelier.surprises)} surprises")
+        return {"FINISHED"}
+
+
+class OfRule:
+    """Works on the lights that a rule named, or on the selected ones."""
+    bl_options = {"REGISTER", "UNDO"}
+
+    rule: StringProperty(name="Rule", options={"HIDDEN", "SKIP_SAVE"})
+
+    def lights(self, context):
+        if not self.rule:
+            return edit.selected_lights(context)
+        named = [item.name for item in context.window_manager.chandelier.surprises if item.rule == self.rule]
+        return [context.scene.objects[name] for name in named if name in context.scene.objects]
+
+    def execute(self, context):
+        lights = [light for light in self.lights(context) if edit.is_editable(light) and edit.is_editable(light.data)]
+        self.mend(context, lights)
+        find(context)
+        self.report({"INFO"}, f"{len(lights)} lights")
+        return {"FINISHED"} if lights else {"CANCELLED"}
+
+
+class CHANDELIER_OT_select_surprised(OfRule, bpy.types.Operator):
+    """Select these lights"""
+    bl_idname = "chandelier.select_surprised"
+    bl_label = "Select"
+
+    def execute(self, context):
+        lights = [light for light in self.lights(context) if light.name in context.view_layer.objects]
+        for other in context.selected_objects:
+            other.select_set(False)
+        for light in lights:
+            light.select_set(True)
+        context.view_layer.objects.active = lights[0] if lights else None
+        return {"FINISHED"}
+
+
+class CHANDELIER_OT_convert_area(OfRule, bpy.types.Operator):
+    """Turn area lights into lights that glTF has, with the same power: a spot, which is a quarter as bright straight ahead, or a
+    point light, which shines backwards too"""
+    bl_idname = "chandelier.convert_area"
+    bl_label = "Convert Area Lights"
+
+    kind: EnumProperty(name="To", default="SPOT", items=(
+        ("SPOT", "Spot", "Shines into the half space that the area did"), ("POINT", "Point", "Shines everywhere")))
+
+    def mend(self, context, lights):
+        for data in edit.data_of([light for light in lights if light.data.type == "AREA"]):
+            width, height = data.size, data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
+            data.type = self.kind
+            data = bpy.data.lights[data.name]  # now of another Python type
+            data.shadow_soft_size = (width + height) / 4
+            if self.kind == "SPOT":
+                data.spot_size, data.spot_blend = np.pi * 160 / 180, 1
+
+
+class CHANDELIER_OT_unscale_lights(OfRule, bpy.types.Operator):
+    """Take the scale from lights, which stay where they are; a light that a parent shears loses that parent"""
+    bl_idname = "chandelier.unscale_lights"
+    bl_label = "Apply Scale"
+
+    def mend(self, context, lights):
+        for light in lights:
+            place = light.matrix_world
+            target = Matrix.LocRotScale(place.translation, place.to_quaternion(), None)
+            light.matrix_world = target
+            context.view_layer.update()
+            if max(abs(a - b) for rows in zip(light.matrix_world, target) for a, b in zip(*rows)) > 1e-4:
+                light.parent = None
+                light.matrix_world = target
+        context.view_layer.update()
+
+
+class CHANDELIER_OT_set_range(OfRule, bpy.types.Operator):
+    """Give lights a range: the distance at which their illuminance has fallen to this"""
+    bl_idname = "chandelier.set_range"
+    bl_label = "Set Range"
+
+    illuminance: FloatProperty(name="Illuminance", description="Lux where the light ends", default=1, min=0.001, soft_max=100)
+
+    def mend(self, context, lights):
+        for data in edit.data_of(lights):
+            power_w, colour = scene_lights.emission_of(data)
+            candela = photometry.intensity_of(photometry.POINT, power_w) * max(colour)
+            if candela > 0 and data.type in ("POINT", "SPOT"):
+                data.use_custom_distance = True
+                data.cutoff_distance = photometry.range_of(candela, self.illuminance)
+
+
+class CHANDELIER_OT_make_single_user(OfRule, bpy.types.Operator):
+    """Give each light data of its own"""
+    bl_idname = "chandelier.make_single_user"
+    bl_label = "Make Single User"
+
+    def mend(self, context, lights):
+        for light in lights:
+            if light.data.users > 1:
+                light.data = light.data.copy()
+
+
+CLASSES = (CHANDELIER_OT_find_surprises, CHANDELIER_OT_select_surprised, CHANDELIER_OT_convert_area,
+           CHANDELIER_OT_unscale_lights, CHANDELIER_OT_set_range, CHANDELIER_OT_make_single_user)
+register_classes, unregister_classes = bpy.utils.register_classes_factory(CLASSES)
+
+
+@bpy.app.handlers.persistent
+def forget(*_):
+    """What was found in one file says nothing of another."""
+    session = bpy.context.window_manager.chandelier
+    session.surprises.clear()
+    session.has_looked = False
+
+
+def register():
+    register_classes()
+    bpy.app.handlers.load_post.append(forget)
+
+
+def unregister():
+    bpy.app.handlers.load_post.remove(forget)
+    unregister_classes()
