@@ -11,9 +11,10 @@ bl_info = {
     "category": "Lighting",
 }
 
-from . import edit, light_list, place, properties, surprises_ui  # noqa: E402  (Blender reads bl_info without running this file)
+from . import edit, export, light_list, place, properties, surprises_ui  # noqa: E402  (Blender reads bl_info by itself)
+from .gltf_hook import glTF2ExportUserExtension  # noqa: E402, F401  (the exporter looks for it here)
 
-MODULES = (properties, place, edit, light_list, surprises_ui)
+MODULES = (properties, place, edit, light_list, surprises_ui, export)
 
 
 def register():

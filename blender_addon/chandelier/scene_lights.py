@@ -42,6 +42,11 @@ def emission_node(light):
     return links[0].from_node if links and links[0].from_node.type == "EMISSION" else None
 
 
+def range_of(light):
+    """Metres; 0 of a light without one."""
+    return light.cutoff_distance if light.use_custom_distance and light.type != "SUN" else 0.0
+
+
 def record_of(light, groups):
     """A light's row of light_table.DATA; None of one that glTF has not, or that is dark. `groups`: name -> number, grows."""
     kind = KINDS.get(light.type)
@@ -52,9 +57,8 @@ def record_of(light, groups):
         return None
     settings = light.chandelier
     group = groups.setdefault(settings.group, len(groups)) if settings.group else light_table.NO_GROUP
-    bounded = light.use_custom_distance and kind != photometry.DIRECTIONAL
     return light_table.record(
-        kind, power_w, colour, range_m=light.cutoff_distance if bounded else 0.0, radius_m=light.shadow_soft_size
+        kind, power_w, colour, range_m=range_of(light), radius_m=light.shadow_soft_size
         if kind != photometry.DIRECTIONAL else 0.0, spot_outer_rad=light.spot_size / 2 if kind == photometry.SPOT else math.pi,
         dynamic=settings.dynamic, cluster=settings.cluster, priority=settings.priority, group=group)
 

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads a written glTF back and compares its lights with those that were meant."""
+
+import json
+import pathlib
+import struct
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import photometry
+
+TYPES = {"point": photometry.POINT, "spot": photometry.SPOT, "directional": photometry.DIRECTIONAL}
+NEAR_M = 1e-3  # places go through decomposed matrices and decimal numbers
+
+
+@dataclass
+class Check:
+    """One line for each light that came out otherwise than it was meant."""
+    errors: list = field(default_factory=list)
+    extra: list = field(default_factory=list)  # names of lights that are in the file though nobody expects them
+    lights: int = 0
+
+
+def read_json(path):
+    """Of a .gltf or .glb; ValueError says what is wrong with the file."""
+    data = pathlib.Path(path).read_bytes()
+    if data[:4] == b"glTF":
+        if len(data) < 20 or data[16:20] != b"JSON":
+            raise ValueError(f"{path}: is not a whole .glb")
+        data = data[20:20 + struct.unpack_from("<I", data, 12)[0]]
+    try:
+        return json.loads(data)
+    except ValueError as error:
+        raise ValueError(f"{path}: is not JSON ({error})") from None
+
+
+def matrix_of(node):
+    if "matrix" in node:
+        return np.array(node["matrix"], float).reshape(4, 4).T
+    x, y, z, w = node.get("rotation", (0, 0, 0, 1))
+    rotation = np.array(((1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+                         (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+                         (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y))))
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation * node.get("scale", (1, 1, 1))
+    matrix[:3, 3] = node.get("translation", (0, 0, 0))
+    return matrix
+
+
+def placed_lights(gltf):
+    """(node's name, world matrix, light) of each node that places one."""
+    lights = gltf.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", [])
+    nodes, found = gltf.get("nodes", []), []
+    scenes = gltf.get("scenes", [])
+    waiting = [(root, np.eye(4)) for root in scenes[gltf.get("scene", 0)].get("nodes", [])] if scenes else []
+    while waiting:
+        number, parent = waiting.pop()
+        node = nodes[number]
+        matrix = parent @ matrix_of(node)
+        light = node.get("extensions", {}).get("KHR_lights_punctual", {}).get("light")
+        if light is not None:
+            found.append((node.get("name", ""), matrix, lights[light]))
+        waiting += [(child, matrix) for child in node.get("children", [])]
+    return found
+
+
+def to_gltf(vectors):
+    """Blender's Z up as glTF's Y up."""
+    return np.stack((vectors[:, 0], vectors[:, 2], -vectors[:, 1]), axis=1).astype(float)
+
+
+def check(path, table):
+    """`table`: the LightTable that was meant."""
+    placed = placed_lights(read_json(path))
+    result = Check(lights=len(placed))
+    types = np.array([TYPES[light["type"]] for _, _, light in placed], int)
+    positions = np.array([matrix[:3, 3] for _, matrix, _ in placed]).reshape(-1, 3)
+    intensities = np.array([light.get("intensity", 1) for _, _, light in placed], float)
+    free = np.ones(len(placed), bool)
+    wanted = to_gltf(table.position)
+    ways = to_gltf(table.direction)
+    for row, name in enumerate(table.names):
+        apart = np.linalg.norm(positions - wanted[row], axis=1)
+        near = free & (types == table.type[row]) & (apart < NEAR_M * (1 + np.linalg.norm(wanted[row])))
+        if table.type[row] == photometry.DIRECTIONAL:
+            near = free & (types == table.type[row])  # a sun is everywhere
+        if not near.any():
+            result.errors.append(f"{name}: is not in the file where it was meant to be")
+            continue
+        scores = np.where(near, apart + abs(intensities - table.intensity[row]) / table.intensity[row]
+                          + [0 if node in name else 1 for node, _, _ in placed], np.inf)
+        best = int(scores.argmin())
+        free[best] = False
+        result.errors += [f"{name}: {what}" for what in differences(table, row, ways[row], *placed[best][1:])]
+    result.extra = [placed[number][0] for number in np.flatnonzero(free)]
+    return result
+
+
+def differences(table, row, way, matrix, light):
+    """What a light of the file has otherwise than a row of the table."""
+    out = []
+
+    def compare(what, unit, written, meant, tolerance):
+        if abs(written - meant) > tolerance * max(abs(meant), 1e-9):
+            out.append(f"{what} is {written:.7g}{unit} in the file, meant was {meant:.7g}{unit}")
+
+    extras = (light.get("extras") or {}).get("chandelier") or {}
+    compare("intensity", " lx" if table.type[row] == photometry.DIRECTIONAL else " cd", light.get("intensity", 1),
+            float(table.intensity[row]), 1e-6)
+    compare("power_w", " W", float(np.float32(extras.get("power_w", -1))), float(table.power_w[row]), 0)
+    compare("range", " m", float(np.float32(light.get("range", 0))), float(table.range_m[row]), 0)
+    for part, name in enumerate(("red", "green", "blue")):
+        compare(name, "", light.get("color", (1, 1, 1))[part], float(table.colour[row, part]), 1e-6)
+    if table.type[row] != photometry.POINT:
+        forward = -matrix[:3, 2] / np.linalg.norm(matrix[:3, 2])
+        if forward @ way < 0.9999:
+            out.append(f"shines to {tuple(forward.round(3))} in the file, meant was {tuple(way.round(3))}")
+    return out

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Export through Blender's own glTF exporter, and a look at what it has written."""
+
+import os
+
+import bpy
+from bpy.props import StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from . import scene_lights
+from .core import gltf_check
+
+WANTED = {
+    "export_format": "GLB", "export_lights": True, "export_cameras": True, "export_yup": True, "export_apply": True,
+    "export_current_frame": True,  # else lights are written where they are at frame 0
+    "use_active_scene": True, "use_renderable": True, "check_existing": False,
+    "convert_lighting_mode": "SPEC",  # 3.4's name
+    "export_import_convert_lighting_mode": "SPEC",  # the later ones'
+}
+
+
+def export(context, path):
+    """Writes a .glb and returns the Check of it. RuntimeError or ValueError say what went wrong."""
+    if not hasattr(bpy.types, "EXPORT_SCENE_OT_gltf"):
+        raise RuntimeError("the add-on 'glTF 2.0 format' is switched off")
+    known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
+    written = os.path.splitext(path)[0] + ".writing.glb"  # whatever happens, the older file is whole
+    bpy.ops.export_scene.gltf(filepath=written, **{name: value for name, value in WANTED.items() if name in known})
+    if not os.path.exists(written):
+        raise RuntimeError(f"{path}: the exporter wrote nothing")
+    check = gltf_check.check(written, scene_lights.read(context.evaluated_depsgraph_get()))
+    os.replace(written, path)
+    return check
+
+
+class CHANDELIER_OT_export(bpy.types.Operator, ExportHelper):
+    """Export the scene as .glb with everything that Chandelier knows about its lights, and check the written file"""
+    bl_idname = "chandelier.export"
+    bl_label = "Export for Chandelier"
+
+    filename_ext = ".glb"
+    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+
+    def execute(self, context):
+        try:
+            check = export(context, self.filepath)
+        except (RuntimeError, ValueError, OSError) as error:
+            self.report({"ERROR"}, str(error).strip())
+            return {"CANCELLED"}
+        for line in check.errors:
+            self.report({"ERROR"}, line)
+        for name in check.extra:
+            self.report({"WARNING"}, f"{name}: is in the file, but hidden in the viewport")
+        self.report({"INFO"}, f"{check.lights} lights in {self.filepath}")
+        return {"FINISHED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((CHANDELIER_OT_export,))

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What Blender's glTF exporter calls: writes each light's watts, range and extras.chandelier.
+
+The exporter swallows what is raised here and says that it has finished, so that export.py checks the written file.
+It has no hook for lights; all nodes with the same light share one dict, which is filled again for each of them."""
+
+from . import scene_lights
+from .core import photometry
+
+EXTENSION = "KHR_lights_punctual"
+
+
+class glTF2ExportUserExtension:
+    """Found by this name in the add-on's module."""
+
+    def gather_node_hook(self, node, blender_object, export_settings):
+        without_property_group(node)
+        if blender_object is None or blender_object.type != "LIGHT" or EXTENSION not in (node.extensions or {}):
+            return
+        light = node.extensions[EXTENSION].extension["light"].extension
+        write_light(light, blender_object.data, export_settings["gltf_lighting_mode"] == "SPEC")
+
+    def gather_scene_hook(self, scene, blender_scene, export_settings):
+        without_property_group(scene)
+
+
+def without_property_group(element):
+    """With custom properties exported, our own come along as Blender stores them, which is not what a baker reads."""
+    if isinstance(element.extras, dict):
+        element.extras.pop("chandelier", None)
+        element.extras = element.extras or None
+
+
+def write_light(light, data, is_spec):
+    """`light`: as KHR_lights_punctual has it; `is_spec`: its intensity is in the extension's units. Exporters differ in what
+    they make of a light's nodes, exposure and temperature: here it is what the preview takes too."""
+    power_w, colour = scene_lights.emission_of(data)
+    power_w = max(power_w, 0.0)
+    kind = scene_lights.KINDS[data.type]
+    if is_spec:
+        brightest = max(1.0, *colour)  # glTF's colours end at 1
+        light["intensity"] = photometry.intensity_of(kind, power_w) * brightest
+        light["color"] = [max(part, 0.0) / brightest for part in colour]
+    extras = extras_of(data, power_w)
+    light.pop("range", None)
+    if "range_m" in extras:
+        light["range"] = extras["range_m"]
+    light["extras"] = {**(light.get("extras") or {}), "chandelier": extras}
+
+
+def extras_of(data, power_w):
+    """schemas/light_extras.schema.json; what has its default is left out."""
+    settings = data.chandelier
+    extras = {"power_w": power_w}
+    range_m = scene_lights.range_of(data)
+    if range_m > 0:
+        extras["range_m"] = range_m
+    if settings.priority != 128:
+        extras["priority"] = settings.priority
+    if settings.dynamic:
+        extras["dynamic"] = True
+    if not settings.cluster:
+        extras["cluster"] = False
+    if settings.group:
+        extras["group"] = settings.group
+    return extras
