@@ -11,10 +11,10 @@ bl_info = {
     "category": "Lighting",
 }
 
-from . import edit, export, light_list, place, properties, surprises_ui  # noqa: E402  (Blender reads bl_info by itself)
+from . import edit, export, handover, light_list, place, properties, surprises_ui  # noqa: E402  (Blender reads bl_info by itself)
 from .gltf_hook import glTF2ExportUserExtension  # noqa: E402, F401  (the exporter looks for it here)
 
-MODULES = (properties, place, edit, light_list, surprises_ui, export)
+MODULES = (properties, place, edit, light_list, surprises_ui, export, handover)
 
 
 def register():

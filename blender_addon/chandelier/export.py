@@ -25,7 +25,11 @@ def export(context, path):
         raise RuntimeError("the add-on 'glTF 2.0 format' is switched off")
     known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
     written = os.path.splitext(path)[0] + ".writing.glb"  # whatever happens, the older file is whole
+    active = context.view_layer.objects.active
+    mode = active.mode if active else "OBJECT"
     bpy.ops.export_scene.gltf(filepath=written, **{name: value for name, value in WANTED.items() if name in known})
+    if active and active.mode != mode:
+        bpy.ops.object.mode_set(mode=mode)  # the exporter leaves it
     if not os.path.exists(written):
         raise RuntimeError(f"{path}: the exporter wrote nothing")
     check = gltf_check.check(written, scene_lights.read(context.evaluated_depsgraph_get()))

@@ -18,14 +18,15 @@ class Placing:
     """What all of them ask, and how their lights are made."""
     bl_options = {"REGISTER", "UNDO"}
 
-    jitter: FloatProperty(name="Jitter", description="Each light is moved at random by up to this", default=0, min=0, unit="LENGTH")
+    jitter: FloatProperty(
+        name="Jitter", description="Each light is moved at random by up to this", default=0, min=0, unit="LENGTH")
     seed: IntProperty(name="Seed", description="Another seed, other random places", default=0, min=0)
     kind: EnumProperty(name="Type", default="POINT", items=(
         ("POINT", "Point", "Shines everywhere"), ("SPOT", "Spot", "Shines into a cone, along what it is placed on")))
     power: FloatProperty(name="Power", description="Of each light", default=40, min=0, soft_max=1000, unit="POWER")
     temperature: FloatProperty(
-        name="Temperature", description="Of the black body whose colour the lights have, kelvin", default=4000, min=800, max=20000,
-        step=10000, precision=0)
+        name="Temperature", description="Of the black body whose colour the lights have, kelvin", default=4000, min=800,
+        max=20000, step=10000, precision=0)
     range: FloatProperty(
         name="Range", description="Where the lights end (their Custom Distance); 0: nowhere, and the baker derives it", default=8,
         min=0, soft_max=100, unit="LENGTH")
@@ -165,7 +166,8 @@ class CHANDELIER_OT_place_on_mesh(Sparse, bpy.types.Operator):
     on: EnumProperty(name="On", default="FACES", items=(
         ("FACES", "Faces", "At the middles of faces"), ("VERTICES", "Vertices", "At vertices")))
     offset: FloatProperty(
-        name="Offset", description="Distance from the surface, along its normal", default=0.1, soft_min=-5, soft_max=5, unit="LENGTH")
+        name="Offset", description="Distance from the surface, along its normal", default=0.1, soft_min=-5, soft_max=5,
+        unit="LENGTH")
 
     @classmethod
     def sources(cls, context):
@@ -196,7 +198,7 @@ class CHANDELIER_OT_scatter(Sparse, bpy.types.Operator):
         inside = inside_of(context, source) if self.volume == "MESH" and source.type == "MESH" else None
         points = placement.scattered(lower, upper, self.spacing, self.count, rng, inside)
         if len(points) < self.count:
-            self.report({"WARNING"}, f"{source.name}: only {len(points)} of {self.count} lights found a place {self.spacing:g} m apart")
+            self.report({"WARNING"}, f"{source.name}: only {len(points)} of {self.count} lights are {self.spacing:g} m apart there")
         return points, np.tile(DOWN, (len(points), 1))
 
 

@@ -50,7 +50,8 @@ def _is_scaled(light):
 def _scaled_text(light):
     if light.sheared:
         return "is sheared by a parent, which glTF cannot say: it may end up elsewhere"
-    return f"is scaled by {' × '.join(f'{part:.3g}' for part in light.scale)}: glTF's lights have no size, and a spot's cone changes"
+    scale = " × ".join(f"{part:.3g}" for part in light.scale)
+    return f"is scaled by {scale}: glTF's lights have no scale, and a spot's cone will be another"
 
 
 def _range_text(light):

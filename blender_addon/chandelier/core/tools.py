@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finds chandelier-bake and chandelier-play and runs them beside Blender."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+
+# As chandelier-bake --verbose names them, in its order, and how long each takes of a bake of some ten images (baker/README.md).
+# What is in the cache is not baked again: some are left out then.
+PASSES = {
+    "import": 6, "materials": 1, "animation": 1, "find_geometry": 0, "normals": 1, "tangents": 2, "quantize": 5, "weld": 2,
+    "clean": 3, "shells": 4, "batches": 12, "instances": 1, "batch_bvh": 1, "instance_bvh": 1, "triangle_bvh": 10, "voxels": 5,
+    "keep_geometry": 1, "images": 20, "lights": 1, "light_bvh": 1, "light_audit": 2, "write": 13, "check": 4, "sync": 3}
+PASS_LINE = re.compile(r"^chandelier-bake: [\d.]+ s: (.+) took [\d.]+ s$")
+TOLD_LINE = re.compile(r"^chandelier-\w+: (error|warning): (.*)$")
+PATIENCE_S = 3  # of a program that was told to end
+
+
+class ToolError(Exception):
+    """One line that a user can read."""
+
+
+def program_name(tool):
+    return tool + (".exe" if sys.platform == "win32" else "")
+
+
+def find(tool, folders):
+    """A program in one of the folders, else in PATH."""
+    name = program_name(tool)
+    for folder in folders:
+        path = pathlib.Path(folder) / name
+        if path.is_file() and os.access(path, os.X_OK):
+            return str(path)
+    found = shutil.which(name)
+    if found:
+        return found
+    looked = ", ".join(map(str, folders))
+    raise ToolError(f"{tool}: is neither in PATH nor in {looked}: name its folder in the add-on's preferences")
+
+
+def bake_command(program, scene, pack, cache=None):
+    return [program, str(scene), "-o", str(pack), "--verbose", *(("--cache", str(cache)) if cache else ())]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What chandelier-play is asked to show; names are its own."""
+    d_init: float = 0.5
+    distance_scaling: str = "grow"
+    z_far: float = 30
+    face_size: int = 512
+    filter: str = "pcss"
+    budget_maps: int = 0
+    budget_mib: int = 0
+    camera: str = ""
+
+
+def play_command(program, pack, shown):
+    """A budget chooses the distance, so that only one of them is said."""
+    command = [program, str(pack), "--preset", "lightcluster", "--filter", shown.filter, "--distance-scaling",
+               shown.distance_scaling, "--z-far", f"{shown.z_far:g}", "--face-size", str(shown.face_size)]
+    if shown.budget_maps:
+        command += ["--max-shadow-maps", str(shown.budget_maps)]
+    if shown.budget_mib:
+        command += ["--max-shadow-bytes", str(shown.budget_mib)]
+    if not shown.budget_maps and not shown.budget_mib:
+        command += ["--d-init", f"{shown.d_init:g}"]
+    return command + (["--camera", shown.camera] if shown.camera else [])
+
+
+class Job:
+    """A program that runs. What it says goes through a file, so that it never waits for someone to read it."""
+
+    def __init__(self, command):
+        self.name = pathlib.Path(command[0]).stem
+        self.partial = b""
+        self.doing, self.warnings, self.last, self.error = "", [], "", ""
+        self.passed = 0  # of PASSES, with those that were left out
+        self.cancelled = False
+        writing, self.said_path = tempfile.mkstemp(prefix="chandelier-")
+        self.said = open(self.said_path, "rb")
+        try:
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=writing)
+        except OSError as error:
+            self._forget_file()
+            raise ToolError(f"{command[0]}: cannot be run ({error.strerror})") from None
+        finally:
+            os.close(writing)
+
+    def _forget_file(self):
+        self.said.close()
+        os.unlink(self.said_path)
+
+    def is_running(self):
+        """Takes in what was said since. False once it has ended; then `error` says why it failed, if it did."""
+        if self.said.closed:
+            return False
+        ended = self.process.poll() is not None
+        self._take_lines(self.said.read())
+        if ended:
+            self._take_lines(b"\n")
+            self._forget_file()
+            self._judge()
+        return not ended
+
+    def _take_lines(self, data):
+        *lines, self.partial = (self.partial + data).split(b"\n")
+        for line in lines:
+            self._take(line.decode("utf-8", "replace").strip())
+
+    def _take(self, line):
+        done, told = PASS_LINE.match(line), TOLD_LINE.match(line)
+        if done:
+            order = list(PASSES)
+            self.passed = max(self.passed, order.index(done[1]) + 1 if done[1] in PASSES else 0)
+            self.doing = order[self.passed] if self.passed < len(order) else ""
+        elif told and told[1] == "warning":
+            self.warnings.append(told[2])
+        elif told:
+            self.error = told[2]
+        if line:
+            self.last = line
+
+    def _judge(self):
+        code = self.process.returncode
+        if self.cancelled:
+            self.error = f"{self.name}: cancelled"
+        elif code < 0:
+            self.error = f"{self.name}: ended by signal {-code}"
+        elif code > 0:
+            self.error = f"{self.name}: {self.error or self.last or f'ended with status {code}'}"
+        else:
+            self.error = ""
+
+    @property
+    def progress(self):
+        """0 to 1."""
+        return sum(list(PASSES.values())[:self.passed]) / sum(PASSES.values())
+
+    def cancel(self):
+        """Ends it, by force where it does not listen."""
+        if not self.is_running():
+            return
+        self.cancelled = True
+        self.process.terminate()
+        try:
+            self.process.wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.is_running()

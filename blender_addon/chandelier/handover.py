@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bake and Play: export, chandelier-bake beside Blender, then chandelier-play, which starts again with each new pack."""
+
+import os
+import pathlib
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+
+from . import export, surprises_ui
+from .core import tools
+
+POLL_S = 0.1
+
+
+class Preferences(bpy.types.AddonPreferences):
+    bl_idname = __package__
+
+    tools_folder: StringProperty(
+        name="Programs", description="Folder of chandelier-bake and chandelier-play; empty: the add-on's own, else PATH",
+        subtype="DIR_PATH")
+
+    def draw(self, context):
+        self.layout.prop(self, "tools_folder")
+
+
+def find_tool(name):
+    own = pathlib.Path(__file__).resolve().parent / "bin"
+    folder = bpy.context.preferences.addons[__package__].preferences.tools_folder
+    return tools.find(name, [*([bpy.path.abspath(folder)] if folder else []), own])
+
+
+class Handover:
+    """What runs, and what came of it. No file keeps it, and Blender's own types cannot hold a process."""
+
+    def __init__(self):
+        self.bake, self.player, self.play_command = None, None, []
+        self.play_after = False
+        self.error, self.notes = "", []  # what the panel shows
+        self.done = ""
+
+    @property
+    def status(self):
+        if self.bake is None:
+            return ""
+        return f"Baking {self.bake.doing.replace('_', ' ')} {self.bake.progress:.0%}" if self.bake.doing else "Baking"
+
+    def start(self, context, play_after=False):
+        """Exports and begins to bake. False where that cannot be: `error` says why."""
+        self.stop()
+        self.error, self.notes, self.done, self.play_after = "", [], "", play_after
+        surprises_ui.find(context)
+        pack = pack_path(context.scene)
+        try:
+            program = find_tool("chandelier-bake")
+            check = export.export(context, str(pack) + ".glb")
+            self.notes = [*check.errors, *(f"{name}: is hidden in the viewport, and in the pack" for name in check.extra)]
+            cache = pathlib.Path(bpy.app.tempdir) / "chandelier-cache"
+            self.bake = tools.Job(tools.bake_command(program, str(pack) + ".glb", pack, cache))
+        except (tools.ToolError, RuntimeError, ValueError, OSError) as error:
+            self.error = str(error).strip()
+            return False
+        self.play_command = play_command(context.scene) if play_after else self.play_command
+        return True
+
+    def poll(self):
+        """Takes in what has ended. True while something is still running."""
+        if self.bake and not self.bake.is_running():
+            job, self.bake = self.bake, None
+            self.error = job.error
+            self.notes += job.warnings
+            if not job.error:
+                self.done = "Baked"
+                if self.play_after or self.player:
+                    self.play(self.play_command)
+        if self.player and not self.player.is_running():
+            self.error, self.player = self.player.error or self.error, None
+        return self.bake is not None or self.player is not None
+
+    def play(self, command):
+        """Starts the player anew, so that it shows the pack as it is now."""
+        if self.player:
+            self.player.cancel()
+        self.play_command = command
+        try:
+            self.player = tools.Job([find_tool("chandelier-play"), *command])
+        except tools.ToolError as error:
+            self.player, self.error = None, str(error)
+
+    def stop(self):
+        """Ends the bake; the older pack stays as it was."""
+        if self.bake:
+            self.bake.cancel()
+            self.error, self.bake = self.bake.error, None
+
+
+# Timers, handlers, panels and operators, which Blender makes anew for each call, all look at the one that runs.
+handover = Handover()
+
+
+def pack_path(scene):
+    if scene.chandelier.pack_path:
+        return pathlib.Path(bpy.path.abspath(scene.chandelier.pack_path))
+    if bpy.data.filepath:
+        return pathlib.Path(bpy.data.filepath).with_suffix(".chandelier")
+    return pathlib.Path(bpy.app.tempdir) / "untitled.chandelier"
+
+
+def play_command(scene):
+    """Without the program, which is looked for when it starts."""
+    settings, camera = scene.chandelier, scene.camera
+    names = tools.Shown.__dataclass_fields__.keys() - {"camera"}
+    shown = tools.Shown(camera=camera.name if camera and camera.data.type == "PERSP" else "",
+                        **{name: getattr(settings, name) for name in names})
+    return tools.play_command("", pack_path(scene), shown)[1:]
+
+
+def tick():
+    """Blender's timer: again after so many seconds, or never."""
+    running = handover.poll()
+    show_status()
+    return POLL_S if running else None
+
+
+def watch():
+    if not bpy.app.background and not bpy.app.timers.is_registered(tick):
+        bpy.app.timers.register(tick, first_interval=POLL_S, persistent=True)
+
+
+def wait():
+    """Without windows there are no timers: until the bake has ended."""
+    while handover.bake:
+        handover.bake.process.wait()
+        handover.poll()
+
+
+def draw_status(header, context):
+    header.layout.label(text=f"Chandelier: {handover.status}", icon="LIGHT")
+    header.layout.operator("chandelier.cancel", text="Cancel", icon="CANCEL")
+
+
+def show_status():
+    """In the status bar while a bake runs, and in the panels of all windows."""
+    for window in bpy.context.window_manager.windows:
+        window.workspace.status_text_set(draw_status if handover.bake else None)
+        for area in window.screen.areas:
+            if area.type in ("VIEW_3D", "PROPERTIES"):
+                area.tag_redraw()
+
+
+class CHANDELIER_OT_bake(bpy.types.Operator):
+    """Export the scene and bake its pack"""
+    bl_idname = "chandelier.bake"
+    bl_label = "Bake"
+
+    play: BoolProperty(name="Play", description="Show the pack when it is baked", default=False, options={"SKIP_SAVE"})
+
+    def execute(self, context):
+        if not handover.start(context, self.play):
+            self.report({"ERROR"}, handover.error)
+            return {"CANCELLED"}
+        watch()
+        if not bpy.app.background:
+            return {"FINISHED"}
+        wait()
+        if handover.error:
+            self.report({"ERROR"}, handover.error)
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"baked {pack_path(context.scene)}")
+        return {"FINISHED"}
+
+
+class CHANDELIER_OT_play(bpy.types.Operator):
+    """Show the pack in chandelier-play; without one, bake it first"""
+    bl_idname = "chandelier.play"
+    bl_label = "Play"
+
+    def execute(self, context):
+        if not os.path.exists(pack_path(context.scene)):
+            return bpy.ops.chandelier.bake(play=True)
+        handover.error = ""
+        handover.play(play_command(context.scene))
+        if handover.error:
+            self.report({"ERROR"}, handover.error)
+            return {"CANCELLED"}
+        watch()
+        return {"FINISHED"}
+
+
+class CHANDELIER_OT_cancel(bpy.types.Operator):
+    """Stop the bake; the older pack stays as it was"""
+    bl_idname = "chandelier.cancel"
+    bl_label = "Cancel Bake"
+
+    @classmethod
+    def poll(cls, context):
+        return handover.bake is not None
+
+    def execute(self, context):
+        handover.stop()
+        show_status()
+        return {"FINISHED"}
+
+
+@bpy.app.handlers.persistent
+def bake_on_save(*_):
+    context = bpy.context
+    if context.scene.chandelier.bake_on_save and handover.start(context):
+        watch()
+        if bpy.app.background:
+            wait()
+
+
+CLASSES = (Preferences, CHANDELIER_OT_bake, CHANDELIER_OT_play, CHANDELIER_OT_cancel)
+register_classes, unregister_classes = bpy.utils.register_classes_factory(CLASSES)
+
+
+def register():
+    register_classes()
+    bpy.app.handlers.save_post.append(bake_on_save)
+
+
+def unregister():
+    handover.stop()
+    if bpy.app.timers.is_registered(tick):
+        bpy.app.timers.unregister(tick)
+    bpy.app.handlers.save_post.remove(bake_on_save)
+    unregister_classes()

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bake, Play and Bake on Save, without a display."""
+
+import os
+import pathlib
+import stat
+
+import bpy
+
+from blender_case import ADDON, SOURCE, BlenderCase, part
+
+BIN = pathlib.Path(os.environ.get("CHANDELIER_BIN", SOURCE / "build" / "bin"))
+
+
+class HandoverCase(BlenderCase):
+    def setUp(self):
+        super().setUp()
+        if not (BIN / "chandelier-bake").exists():
+            self.skipTest(f"no chandelier-bake in {BIN}")
+        self.module = part("handover")
+        self.handover = self.module.handover
+        self.handover.__init__()
+        self.use_tools(BIN)
+        self.addCleanup(self.use_tools, "")
+        bpy.ops.mesh.primitive_plane_add(size=9)
+        self.lamp = self.add_light("Lamp", location=(0, 0, 2), energy=33, use_custom_distance=True, cutoff_distance=5)
+        self.blend = self.folder / "hall.blend"
+        self.pack = self.folder / "hall.chandelier"
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.blend))
+
+    def use_tools(self, folder):
+        bpy.context.preferences.addons[ADDON].preferences.tools_folder = str(folder)
+
+    def refused(self, name, says):
+        with self.assertRaises(RuntimeError) as raised:
+            getattr(bpy.ops.chandelier, name)()
+        self.assertIn(says, str(raised.exception))
+        self.assertIn(says, self.handover.error)
+        self.assertNotIn("\n", self.handover.error)
+
+
+class Bake(HandoverCase):
+    def test_a_saved_scene(self):
+        self.assertEqual(bpy.ops.chandelier.bake(), {"FINISHED"})
+        self.assertTrue(self.pack.exists())
+        self.assertEqual((self.handover.error, self.handover.done, self.handover.status), ("", "Baked", ""))
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
+                         ["hall.blend", "hall.chandelier", "hall.chandelier.glb"])
+
+    def test_a_path_of_its_own(self):
+        self.scene.chandelier.pack_path = "//packs.chandelier"
+        bpy.ops.chandelier.bake()
+        self.assertTrue((self.folder / "packs.chandelier").exists())
+
+    def test_an_unsaved_scene_goes_to_blenders_temporary_folder(self):
+        bpy.ops.wm.read_homefile(use_empty=True)
+        bpy.ops.mesh.primitive_plane_add()
+        bpy.ops.chandelier.bake()
+        self.assertTrue((pathlib.Path(bpy.app.tempdir) / "untitled.chandelier").exists())
+
+    def test_errors_are_one_line_and_the_older_pack_stays(self):
+        bpy.ops.chandelier.bake()
+        before = self.pack.read_bytes()
+        self.lamp.data.chandelier.priority = 1
+        self.pack.unlink()
+        self.pack.mkdir()  # what no baker can replace
+        self.refused("bake", "hall.chandelier: the output is a folder")
+        self.pack.rmdir()
+        bpy.ops.chandelier.bake()
+        self.assertNotEqual(self.pack.read_bytes(), before)
+
+    def test_without_the_program(self):
+        self.use_tools(self.folder)
+        path = os.environ["PATH"]
+        os.environ["PATH"] = str(self.folder)
+        try:
+            self.refused("bake", "chandelier-bake: is neither in PATH nor in")
+        finally:
+            os.environ["PATH"] = path
+
+    def test_warnings_of_the_baker_and_surprises_are_kept(self):
+        self.add_light("Area", "AREA")
+        self.lamp.data.energy = 10
+        for i in range(2):
+            self.add_light(f"Same {i}", location=(i, 0, 1), energy=10)
+        self.lamp.data.use_custom_distance = False
+        bpy.ops.chandelier.bake()
+        self.assertTrue(any("was their strength ever set" in note for note in self.handover.notes), self.handover.notes)
+        found = {(item.rule, item.name) for item in bpy.context.window_manager.chandelier.surprises}
+        self.assertIn(("area", "Area"), found)
+
+    def test_edit_mode_is_kept(self):
+        bpy.context.view_layer.objects.active = bpy.data.objects["Plane"]
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.chandelier.bake()
+        self.assertEqual(bpy.context.object.mode, "EDIT")
+
+    def test_cancel(self):
+        slow = self.folder / "slow"
+        slow.mkdir()
+        program = slow / "chandelier-bake"
+        program.write_text("#!/bin/sh\nexec sleep 60\n")
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        self.use_tools(slow)
+        self.assertFalse(bpy.ops.chandelier.cancel.poll())
+        self.assertTrue(self.handover.start(bpy.context))
+        self.assertTrue(self.handover.poll())
+        self.assertEqual(self.handover.status, "Baking")
+        bpy.ops.chandelier.cancel()
+        self.assertFalse(self.handover.poll())
+        self.assertEqual(self.handover.error, "chandelier-bake: cancelled")
+
+
+class OnSave(HandoverCase):
+    def save(self):
+        bpy.ops.wm.save_mainfile()
+
+    def test_only_where_it_is_wanted(self):
+        self.save()
+        self.assertFalse(self.pack.exists())
+        self.scene.chandelier.bake_on_save = True
+        self.save()
+        self.assertTrue(self.pack.exists())
+        first = self.pack.read_bytes()
+        self.lamp.location.z = 3
+        self.save()
+        self.assertNotEqual(self.pack.read_bytes(), first)
+
+    def test_a_failure_does_not_keep_from_saving(self):
+        self.scene.chandelier.bake_on_save = True
+        self.pack.mkdir()
+        self.save()
+        self.assertIn("the output is a folder", self.handover.error)
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+        self.assertTrue(bpy.context.scene.chandelier.bake_on_save)
+
+
+class Play(HandoverCase):
+    def setUp(self):
+        super().setUp()
+        if not (BIN / "chandelier-play").exists():
+            self.skipTest(f"no chandelier-play in {BIN}")
+        display = os.environ.pop("DISPLAY", None)
+        if display is not None:
+            self.addCleanup(os.environ.__setitem__, "DISPLAY", display)
+
+    def ended(self):
+        self.handover.player.process.wait(60)
+        self.handover.poll()
+
+    def test_the_players_error_is_shown(self):
+        bpy.ops.chandelier.bake()
+        self.assertEqual(bpy.ops.chandelier.play(), {"FINISHED"})
+        self.ended()
+        self.assertIsNone(self.handover.player)
+        self.assertIn("chandelier-play: no display", self.handover.error)
+
+    def test_without_a_pack_it_bakes_first(self):
+        bpy.ops.chandelier.play()
+        self.assertTrue(self.pack.exists())
+        self.ended()
+        self.assertIn("no display", self.handover.error)
+
+    def test_settings_reach_the_player(self):
+        """It draws what the scene says, into a picture."""
+        settings = self.scene.chandelier
+        settings.d_init, settings.filter, settings.distance_scaling, settings.face_size = 0.75, "pcf", "none", 128
+        bpy.ops.object.camera_add(location=(0, -6, 4), rotation=(1, 0, 0))
+        bpy.context.object.name = "Eye"
+        self.scene.camera = bpy.context.object
+        bpy.ops.chandelier.bake()
+        picture = self.folder / "picture.png"
+        self.handover.play([*self.module.play_command(self.scene), "--output", str(picture), "--size", "64x36"])
+        self.ended()
+        self.assertEqual(self.handover.error, "")
+        self.assertTrue(picture.exists())
+        self.handover.play([*self.module.play_command(self.scene), "--camera", "Nobody", "--output", str(picture)])
+        self.ended()
+        self.assertIn("chandelier-play: ", self.handover.error)
