@@ -11,10 +11,11 @@ bl_info = {
     "category": "Lighting",
 }
 
-from . import edit, export, handover, light_list, place, properties, surprises_ui  # noqa: E402  (Blender reads bl_info by itself)
+# Blender reads bl_info without running the file.
+from . import edit, export, handover, light_list, panels, place, properties, surprises_ui  # noqa: E402
 from .gltf_hook import glTF2ExportUserExtension  # noqa: E402, F401  (the exporter looks for it here)
 
-MODULES = (properties, place, edit, light_list, surprises_ui, export, handover)
+MODULES = (properties, place, edit, light_list, surprises_ui, export, handover, panels)
 
 
 def register():

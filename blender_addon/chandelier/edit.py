@@ -92,7 +92,7 @@ class CHANDELIER_OT_edit_lights(bpy.types.Operator):
 
 
 class CHANDELIER_OT_strength(bpy.types.Operator):
-    """Make a light brighter or dimmer"""
+    """Make the selected lights brighter or dimmer"""
     bl_idname = "chandelier.strength"
     bl_label = "Strength"
     bl_options = {"REGISTER", "UNDO"}

@@ -11,14 +11,12 @@ class CHANDELIER_UL_lights(bpy.types.UIList):
     """Blender's list of the scene's objects, of which the lights are shown."""
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0, flt_flag=0):
-        row = layout.row(align=True)
-        row.prop(item, "name", text="", emboss=False, icon=f"LIGHT_{item.data.type}")
+        split = layout.split(factor=0.5, align=True)
+        split.prop(item, "name", text="", emboss=False, icon=f"LIGHT_{item.data.type}")
+        row = split.row(align=True)
         power = row.row(align=True)
         power.enabled = edit.is_editable(item.data)
         power.prop(item.data, "energy", text="")
-        for factor, symbol in ((0.8, "REMOVE"), (1.25, "ADD")):
-            strength = power.operator("chandelier.strength", text="", icon=symbol)
-            strength.light, strength.factor = item.name, factor
         row.operator("chandelier.solo", text="", emboss=False,
                      icon="SOLO_ON" if is_soloed(context, item) else "SOLO_OFF").light = item.name
 
