@@ -24,10 +24,10 @@ class Preferences(bpy.types.AddonPreferences):
         self.layout.prop(self, "tools_folder")
 
 
-def find_tool(name):
-    own = pathlib.Path(__file__).resolve().parent / "bin"
-    folder = bpy.context.preferences.addons[__package__].preferences.tools_folder
-    return tools.find(name, [*([bpy.path.abspath(folder)] if folder else []), own])
+def tool_folders():
+    """What the preferences name, then the add-on's own."""
+    named = bpy.context.preferences.addons[__package__].preferences.tools_folder
+    return [*([pathlib.Path(bpy.path.abspath(named))] if named else []), pathlib.Path(__file__).resolve().parent / "bin"]
 
 
 class Handover:
@@ -52,7 +52,7 @@ class Handover:
         surprises_ui.find(context)
         pack = pack_path(context.scene)
         try:
-            program = find_tool("chandelier-bake")
+            program = tools.find("chandelier-bake", tool_folders())
             check = export.export(context, str(pack) + ".glb")
             self.notes = [*check.errors, *(f"{name}: is hidden in the viewport, and in the pack" for name in check.extra)]
             cache = pathlib.Path(bpy.app.tempdir) / "chandelier-cache"
@@ -83,7 +83,7 @@ class Handover:
             self.player.cancel()
         self.play_command = command
         try:
-            self.player = tools.Job([find_tool("chandelier-play"), *command])
+            self.player = tools.Job([tools.find("chandelier-play", tool_folders()), *command])
         except tools.ToolError as error:
             self.player, self.error = None, str(error)
 

@@ -40,8 +40,8 @@ class Placing:
 
     @classmethod
     def sources(cls, context):
-        """The objects that lights are placed along, around, on or at."""
-        return context.selected_objects
+        """The objects that lights are placed along, around, on or at: not those that were just placed."""
+        return [thing for thing in context.selected_objects if thing.type != "LIGHT"]
 
     def execute(self, context):
         rng = np.random.default_rng(self.seed)

@@ -190,6 +190,12 @@ class Place(BlenderCase):
         for name in ("place_along_curve", "place_around", "place_on_mesh", "scatter", "place_at_selected"):
             self.assertFalse(getattr(bpy.ops.chandelier, name).poll(), name)
 
+    def test_lights_are_no_place_for_lights(self):
+        self.select(self.add_light(), self.add("Empty"))
+        bpy.ops.chandelier.place_around(count=4)
+        self.assertEqual(len(self.lights()), 5)
+        self.assertFalse(bpy.ops.chandelier.place_around.poll())  # what was placed is selected now
+
     def test_an_empty_mesh_places_nothing(self):
         self.select(self.add("Nothing", bpy.data.meshes.new("Nothing")))
         self.assertEqual(bpy.ops.chandelier.place_on_mesh(), {"CANCELLED"})

@@ -44,6 +44,11 @@ def make_scene():
 drawn = []
 
 
+def press_escape():
+    for value in ("PRESS", "RELEASE"):
+        bpy.context.window_manager.windows[0].event_simulate(type="ESC", value=value)
+
+
 def tab_is_open():
     """Clicks on it until its panels are drawn: Python cannot choose a tab in 3.4."""
     if drawn:
@@ -53,6 +58,15 @@ def tab_is_open():
     for kind, value in (("MOUSEMOVE", "NOTHING"), ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE")):
         bpy.context.window_manager.windows[0].event_simulate(type=kind, value=value, x=x, y=y)
     return False
+
+
+def show_redo(operator, **values):
+    """The operator as from a button, and its redo panel as from F9."""
+    area = area_of("VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region):
+        getattr(bpy.ops.chandelier, operator)("EXEC_DEFAULT", True, **values)
+        bpy.ops.screen.redo_last("INVOKE_DEFAULT")
 
 
 def bake():
@@ -108,7 +122,10 @@ def slow_bake():
 
 
 STEPS = [
-    make_scene, lambda: None, wait_for(tab_is_open, "the tab"), lambda: screenshot("panel"), bake,
+    make_scene, lambda: None, wait_for(tab_is_open, "the tab"), lambda: screenshot("panel"),
+    lambda: show_redo("edit_lights", use_power=True, factor=1), lambda: None, lambda: screenshot("redo_edit"), press_escape,
+    lambda: bpy.data.objects["Cube"].select_set(True),
+    lambda: show_redo("scatter", count=3), lambda: None, lambda: screenshot("redo_place"), press_escape, bake,
     wait_for(lambda: handover().done == "Baked", "baked"), wait_for(lambda: handover().player is not None, "player"), keep_player,
     wait_for(lambda: handover().player not in (None, *first_player), "another player after saving"), close_player,
     wait_for(lambda: handover().player is None, "player closed"), fail_bake,
