@@ -27,7 +27,10 @@ def export(context, path):
     written = os.path.splitext(path)[0] + ".writing.glb"  # whatever happens, the older file is whole
     active = context.view_layer.objects.active
     mode = active.mode if active else "OBJECT"
-    bpy.ops.export_scene.gltf(filepath=written, **{name: value for name, value in WANTED.items() if name in known})
+    try:
+        bpy.ops.export_scene.gltf(filepath=written, **{name: value for name, value in WANTED.items() if name in known})
+    except RuntimeError as error:
+        raise RuntimeError(f"{path}: the glTF exporter failed: {reason(error)}") from None
     if active and active.mode != mode:
         bpy.ops.object.mode_set(mode=mode)  # the exporter leaves it
     if not os.path.exists(written):
@@ -35,6 +38,12 @@ def export(context, path):
     check = gltf_check.check(written, scene_lights.read(context.evaluated_depsgraph_get()))
     os.replace(written, path)
     return check
+
+
+def reason(error):
+    """The one line that says something, of the traceback that Blender makes of an operator's exception."""
+    lines = [line for line in str(error).splitlines() if line.strip() and not line.startswith((" ", "Location:"))]
+    return lines[-1] if lines else "it does not say why"
 
 
 class CHANDELIER_OT_export(bpy.types.Operator, ExportHelper):

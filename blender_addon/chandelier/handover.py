@@ -148,6 +148,19 @@ def show_status():
                 area.tag_redraw()
 
 
+def bake(operator, context, play):
+    """For an operator: in a window it returns at once, and the timer sees to the rest."""
+    if handover.start(context, play):
+        watch()
+        if bpy.app.background:
+            wait()
+    if handover.error:
+        operator.report({"ERROR"}, handover.error)
+        return {"CANCELLED"}
+    operator.report({"INFO"}, f"{'baked' if handover.done else 'baking'} {pack_path(context.scene)}")
+    return {"FINISHED"}
+
+
 class CHANDELIER_OT_bake(bpy.types.Operator):
     """Export the scene and bake its pack"""
     bl_idname = "chandelier.bake"
@@ -156,18 +169,7 @@ class CHANDELIER_OT_bake(bpy.types.Operator):
     play: BoolProperty(name="Play", description="Show the pack when it is baked", default=False, options={"SKIP_SAVE"})
 
     def execute(self, context):
-        if not handover.start(context, self.play):
-            self.report({"ERROR"}, handover.error)
-            return {"CANCELLED"}
-        watch()
-        if not bpy.app.background:
-            return {"FINISHED"}
-        wait()
-        if handover.error:
-            self.report({"ERROR"}, handover.error)
-            return {"CANCELLED"}
-        self.report({"INFO"}, f"baked {pack_path(context.scene)}")
-        return {"FINISHED"}
+        return bake(self, context, self.play)
 
 
 class CHANDELIER_OT_play(bpy.types.Operator):
@@ -177,7 +179,7 @@ class CHANDELIER_OT_play(bpy.types.Operator):
 
     def execute(self, context):
         if not os.path.exists(pack_path(context.scene)):
-            return bpy.ops.chandelier.bake(play=True)
+            return bake(self, context, play=True)
         handover.error = ""
         handover.play(play_command(context.scene))
         if handover.error:

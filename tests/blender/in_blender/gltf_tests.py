@@ -129,7 +129,9 @@ class Written(GltfCase):
         light["artist"] = "me"
         self.scene.chandelier.d_init = 2
         light.chandelier.hidden_by_solo = True
-        bpy.ops.export_scene.gltf(filepath=str(self.path), export_lights=True, export_extras=True, convert_lighting_mode="RAW")
+        known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
+        (mode,) = {"convert_lighting_mode", "export_import_convert_lighting_mode"} & set(known)  # 3.4's name, and the later ones'
+        bpy.ops.export_scene.gltf(filepath=str(self.path), export_lights=True, export_extras=True, **{mode: "RAW"})
         written = self.lights()["Lamp"]
         self.assertAlmostEqual(written["intensity"], WATTS, places=4)
         self.assertEqual(written["extras"]["chandelier"]["priority"], 3)

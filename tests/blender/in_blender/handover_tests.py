@@ -155,6 +155,10 @@ class Play(HandoverCase):
         self.assertIsNone(self.handover.player)
         self.assertIn("chandelier-play: no display", self.handover.error)
 
+    def test_without_a_pack_that_can_be_baked(self):
+        self.scene.chandelier.pack_path = "//no/such/folder.chandelier"
+        self.refused("play", "No such file or directory")
+
     def test_without_a_pack_it_bakes_first(self):
         bpy.ops.chandelier.play()
         self.assertTrue(self.pack.exists())
