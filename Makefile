@@ -9,7 +9,7 @@ PLAY := $(BUILD)/bin/chandelier-play
 BAKE := $(BUILD)/bin/chandelier-bake
 CPP_FILES := $(shell git ls-files '*.cpp' '*.h' 2>/dev/null)
 
-.PHONY: help setup build demo test test-mesa25 bench bench-baker bench-lightcluster fuzz format portable clean
+.PHONY: help setup build demo test test-mesa25 bench bench-baker bench-lightcluster fuzz addon format portable clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -26,6 +26,7 @@ help:
 	@echo "                  --scenes atrium,cornell --repeats 5', or OPTIONS=--quick to see that it works"
 	@echo "make fuzz         look for inputs that break the importer, the pack reader or the cache, SECONDS=60 each; what is found is kept"
 	@echo "make portable     build a chandelier-play that needs only glibc and a Vulkan loader, in build/portable/bin/"
+	@echo "make addon        pack the Blender add-on into build/blender/chandelier.zip, with the preview's library if it is built"
 	@echo "make format       clang-format every C++ file"
 	@echo "make clean        remove build/"
 	@echo "demo, test and bench first install the missing Debian packages of setup/packages.txt (root or sudo)."
@@ -113,6 +114,9 @@ $(BUILD)/demo/%/report.html: $(BUILD)/demo/%.chandelier $(PLAY)
 	@touch $@
 
 .PRECIOUS: $(BUILD)/demo/%.glb $(BUILD)/demo/%.chandelier
+
+addon:
+	$(PYTHON) blender_addon/make_zip.py
 
 format:
 	clang-format -i $(CPP_FILES)

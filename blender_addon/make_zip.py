@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Packs the add-on into one zip that Blender 3.4 installs as an add-on and 4.2 and later as an extension.
 
-The zip holds the folder itself: 3.4 needs it, and the later ones take it. What was built and is named as a library or
-program goes into its bin/ folder, so that an add-on can carry its own tools. Same files, same bytes.
+The zip holds the folder itself: 3.4 needs it, and the later ones take it. Libraries and programs that are named go into its
+bin/ folder, where the add-on looks first; if none is named, the preview's library, where it has been built. Same files, same
+bytes.
 """
 
 import argparse
@@ -12,6 +13,7 @@ import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ADDON = HERE / "chandelier"
+BUILD = HERE.parent / "build"
 SUFFIXES = {".py", ".toml"}
 OLDEST = (1980, 1, 1, 0, 0, 0)  # what a zip can date; the same in each
 
@@ -38,14 +40,15 @@ def write(target, bundled=()):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--output", type=pathlib.Path, default=HERE.parent / "build" / "blender" / "chandelier.zip")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=BUILD / "blender" / "chandelier.zip")
     parser.add_argument("bundled", nargs="*", type=pathlib.Path, help="libraries and programs to carry along")
     arguments = parser.parse_args()
-    missing = [path for path in arguments.bundled if not path.is_file()]
+    bundled = arguments.bundled or list((BUILD / "lib").glob("libchandelier_preview.*"))
+    missing = [path for path in bundled if not path.is_file()]
     if missing:
         parser.error(f"no such file: {missing[0]}")
-    write(arguments.output, arguments.bundled)
-    print(arguments.output)
+    write(arguments.output, bundled)
+    print(f"{arguments.output} with {', '.join(path.name for path in bundled) or 'neither library nor program'}")
 
 
 if __name__ == "__main__":

@@ -100,6 +100,8 @@ class CHANDELIER_PT_lights(Sidebar, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("chandelier.edit_lights", text="Edit", icon="MODIFIER")
         row.operator("chandelier.solo", text="Solo", icon="SOLO_ON")
+        layout.operator("chandelier.select_cluster", icon="GROUP")
+        layout.operator("chandelier.select_over_budget", icon="ERROR")
         for factor, icon in ((0.8, "REMOVE"), (1.25, "ADD")):
             row.operator("chandelier.strength", text="", icon=icon).factor = factor
 
