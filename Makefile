@@ -9,7 +9,7 @@ PLAY := $(BUILD)/bin/chandelier-play
 BAKE := $(BUILD)/bin/chandelier-bake
 CPP_FILES := $(shell git ls-files '*.cpp' '*.h' 2>/dev/null)
 
-.PHONY: help setup build demo test test-mesa25 bench bench-baker bench-lightcluster fuzz addon format portable clean
+.PHONY: help setup build demo test test-mesa25 test-blender4 bench bench-baker bench-lightcluster fuzz addon format portable clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -18,6 +18,7 @@ help:
 	@echo "make test         build and run every test"
 	@echo "make build        build into build/bin/"
 	@echo "make test-mesa25  run the GPU tests on Mesa 25, unpacked privately into build/mesa25"
+	@echo "make test-blender4  run the add-on's tests as an extension in Blender 4.3, with a Debian 13 in build/blender4; needs root"
 	@echo "make bench        measure the baker beside gltfpack, how packs open, how batches and hierarchies compare, and"
 	@echo "                  light clusters as their paper did: the next two targets, one after the other"
 	@echo "make bench-baker  the baker's part, with a plot over the size of the scene, in build/bench/bake/"
@@ -51,6 +52,13 @@ test-mesa25: setup
 	set -e; variables="$$(setup/mesa25.sh $(BUILD)/mesa25)"; echo "$$variables"; \
 	  env $$variables $(PLAY) --list-devices | grep 'Mesa 25' || { echo "the Vulkan loader did not take Mesa 25" >&2; exit 1; }; \
 	  env $$variables ctest --preset release -L gpu
+
+test-blender4:
+	@setup/install.sh setup/packages.txt setup/packages-blender4.txt
+	@$(MAKE) --no-print-directory build
+	set -e; root="$$(setup/blender4.sh $(BUILD)/blender4)"; \
+	  unshare --mount tests/blender/in_root.sh "$$root" $(CURDIR) --command extension validate $(CURDIR)/blender_addon/chandelier; \
+	  CHANDELIER_BLENDER_ROOT="$$root" ctest --preset release -R '^blender\.'
 
 demo: setup
 	@$(MAKE) --no-print-directory build

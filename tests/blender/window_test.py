@@ -13,7 +13,7 @@ import unittest
 
 import numpy as np
 
-from run_in_blender import HERE, SKIPPED, SOURCE, environment
+from run_in_blender import HERE, SKIPPED, SOURCE, blender, environment
 
 BIN = pathlib.Path(os.environ.get("CHANDELIER_BIN", SOURCE / "build" / "bin"))
 SIZE = (1280, 900)
@@ -24,7 +24,9 @@ SLOW_BAKE = "#!/bin/sh\necho 'chandelier-bake: 0.10 s: import took 0.10 s' >&2\n
 class Window(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        for program in ("blender", "Xvfb", "import", "convert"):
+        if not blender():
+            raise unittest.SkipTest("no blender")
+        for program in ("Xvfb", "import", "convert"):
             if not shutil.which(program):
                 raise unittest.SkipTest(f"no {program}")
         if not (BIN / "chandelier-play").exists():
@@ -48,14 +50,15 @@ class Window(unittest.TestCase):
 
     @classmethod
     def run_blender(cls, display):
+        variables = {**environment(cls.folder / "user"), "DISPLAY": display}
+        programs = variables.get("CHANDELIER_BIN", BIN)
         slow = cls.folder / "slow" / "chandelier-bake"
         slow.parent.mkdir()
         slow.write_text(SLOW_BAKE)
         slow.chmod(slow.stat().st_mode | stat.S_IXUSR)
-        command = ["blender", "--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE),
-                   "--python-exit-code", "3", "--python", HERE / "in_blender" / "window_steps.py", "--", cls.folder, BIN]
-        done = subprocess.run(command, env={**environment(cls.folder / "user"), "DISPLAY": display}, timeout=PATIENCE_S,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        command = [*blender(), "--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE),
+                   "--python-exit-code", "3", "--python", HERE / "in_blender" / "window_steps.py", "--", cls.folder, programs]
+        done = subprocess.run(command, env=variables, timeout=PATIENCE_S, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         keep = os.environ.get("CHANDELIER_SCREENSHOTS")  # a folder, for whoever wants to look
         if keep:
             for path in cls.folder.glob("*.png"):

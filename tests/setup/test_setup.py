@@ -21,14 +21,14 @@ class Setup(unittest.TestCase):
             return subprocess.run(["/bin/bash", script, *arguments], env={"PATH": folder}, capture_output=True, text=True)
 
     def test_scripts_parse(self):
-        for script in ("setup/install.sh", "setup/mesa25.sh", ".ci/run"):
+        for script in ("setup/install.sh", "setup/mesa25.sh", "setup/blender4.sh", "tests/blender/in_root.sh", ".ci/run"):
             result = subprocess.run(["bash", "-n", os.path.join(ROOT, script)], capture_output=True, text=True)
             self.assertEqual((result.returncode, result.stderr), (0, ""), script)
             self.assertTrue(os.access(os.path.join(ROOT, script), os.X_OK), script)
 
     def test_package_list_is_in_order(self):
         names = []
-        for list_name in ("packages.txt", "packages-bench.txt", "packages-fuzz.txt"):
+        for list_name in ("packages.txt", "packages-bench.txt", "packages-blender4.txt", "packages-fuzz.txt"):
             with open(os.path.join(ROOT, "setup", list_name), encoding="utf-8") as file:
                 names += [line.split("#")[0].strip() for line in file]
         names = [name for name in names if name]

@@ -240,12 +240,17 @@ class Baked(GltfCase):
     def test_settings_survive(self):
         settings = self.lamp().data.chandelier
         settings.priority, settings.dynamic, settings.cluster = 9, True, False
+        for i in range(2):
+            self.lamp(f"Of group {i}", location=(i, 2, 0)).data.chandelier.group = "bar"
         self.lamp("Other", location=(1, 0, 0))
         self.export()
         baked = self.baked()
         (lamp,), (other,) = baked["Lamp"], baked["Other"]
         self.assertEqual((lamp["priority"], lamp["dynamic"], lamp["unclustered"]), (9, True, True))
         self.assertEqual((other["priority"], other["dynamic"], other["unclustered"]), (128, False, False))
+        groups = [baked[f"Of group {i}"][0]["group"] for i in range(2)]
+        self.assertEqual(groups[0], groups[1])
+        self.assertNotEqual(groups[0], other["group"])
 
     def test_a_linked_library(self):
         collection = bpy.data.collections.new("Library")

@@ -27,6 +27,23 @@ def classes():
                   if kind.__module__.startswith(ADDON) and kind.is_registered)
 
 
+IS_EXTENSION = ADDON.startswith("bl_ext.")
+
+
+def add_ons():
+    """The folder that Blender installs it into."""
+    if IS_EXTENSION:
+        return pathlib.Path(bpy.utils.user_resource("EXTENSIONS", path="user_default"))
+    return pathlib.Path(bpy.utils.user_resource("SCRIPTS", path="addons"))
+
+
+def install(path):
+    if IS_EXTENSION:
+        bpy.ops.extensions.package_install_files(filepath=str(path), repo="user_default", enable_on_install=False)
+    else:
+        bpy.ops.preferences.addon_install(filepath=str(path))
+
+
 class Installed(BlenderCase):
     def tearDown(self):
         addon_utils.enable(ADDON, default_set=True)
@@ -47,21 +64,21 @@ class Installed(BlenderCase):
     def test_installs_and_can_be_switched_off_and_on(self):
         addon_utils.disable(ADDON, default_set=True)
         self.assertFalse(hasattr(bpy.types.Light, "chandelier"))
-        source = pathlib.Path(bpy.utils.user_resource("SCRIPTS", path="addons")) / "chandelier"
+        source = add_ons() / "chandelier"
         source.unlink()  # the link to the source, so that the zip is what is installed
-        for name in [name for name in sys.modules if name.split(".")[0] == "chandelier"]:
+        for name in [name for name in sys.modules if name == ADDON or name.startswith(f"{ADDON}.")]:
             del sys.modules[name]
         make_zip(self.folder / "chandelier.zip")
-        bpy.ops.preferences.addon_install(filepath=str(self.folder / "chandelier.zip"))
+        install(self.folder / "chandelier.zip")
         self.assertTrue((source / "LICENSE").is_file())
         before = classes()
         for _ in range(2):
-            self.assertEqual(bpy.ops.preferences.addon_enable(module="chandelier"), {"FINISHED"})
-            module = sys.modules["chandelier"]
+            self.assertEqual(bpy.ops.preferences.addon_enable(module=ADDON), {"FINISHED"})
+            module = sys.modules[ADDON]
             self.assertEqual(pathlib.Path(module.__file__).parent, source)
             self.assertIn("LightSettings", classes())
             self.assertEqual(self.add_light().data.chandelier.priority, 128)
-            bpy.ops.preferences.addon_disable(module="chandelier")
+            bpy.ops.preferences.addon_disable(module=ADDON)
             self.assertFalse(hasattr(bpy.types.Light, "chandelier"))
             self.assertEqual(classes(), before)
         shutil.rmtree(source)

@@ -27,7 +27,6 @@ def screenshot(name):
 
 
 def make_scene():
-    bpy.context.preferences.view.show_splash = False
     bpy.context.preferences.addons[ADDON].preferences.tools_folder = str(BIN)
     cube = bpy.data.objects["Cube"]
     bpy.context.view_layer.objects.active = cube
@@ -54,6 +53,10 @@ def tab_is_open():
     if drawn:
         return True
     region = next(region for region in area_of("VIEW_3D").regions if region.type == "UI")
+    if bpy.app.version >= (4, 2):
+        region.active_panel_category = "Chandelier"
+        region.tag_redraw()
+        return False
     x, y = region.x + region.width - 10, region.y + region.height - TAB_BELOW_TOP_PX
     for kind, value in (("MOUSEMOVE", "NOTHING"), ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE")):
         bpy.context.window_manager.windows[0].event_simulate(type=kind, value=value, x=x, y=y)
@@ -150,6 +153,7 @@ def run():
         bpy.ops.wm.quit_blender()
 
 
+bpy.context.preferences.view.show_splash = False
 enable_addon()
 part("panels").CHANDELIER_PT_handover.append(lambda *_: drawn.append(True))
 bpy.app.timers.register(run, first_interval=1.5)
