@@ -11,7 +11,7 @@ from .core import photometry, placement
 
 DOWN = Vector((0, 0, -1))
 WITHOUT_BOUNDS = {"EMPTY", "LIGHT", "CAMERA", "SPEAKER", "LIGHT_PROBE"}  # their bound_box says -1 everywhere
-LIGHT_FIELDS = ("kind", "power", "temperature", "range", "radius", "share")
+LIGHT_FIELDS = ("kind", "aim", "power", "temperature", "range", "radius", "share")
 
 
 class Placing:
@@ -22,7 +22,10 @@ class Placing:
         name="Jitter", description="Each light is moved at random by up to this", default=0, min=0, unit="LENGTH")
     seed: IntProperty(name="Seed", description="Another seed, other random places", default=0, min=0)
     kind: EnumProperty(name="Type", default="POINT", items=(
-        ("POINT", "Point", "Shines everywhere"), ("SPOT", "Spot", "Shines into a cone, along what it is placed on")))
+        ("POINT", "Point", "Shines everywhere"), ("SPOT", "Spot", "Shines into a cone")))
+    aim: EnumProperty(name="Aim", default="WAY", items=(
+        ("WAY", "By Place", "Along a curve, towards the object, along a surface's normal, or as the object points"),
+        ("DOWN", "Down", "Straight down")))
     power: FloatProperty(name="Power", description="Of each light", default=40, min=0, soft_max=1000, unit="POWER")
     temperature: FloatProperty(
         name="Temperature", description="Of the black body whose colour the lights have, kelvin", default=4000, min=800,
@@ -67,7 +70,7 @@ class Placing:
             light = bpy.data.objects.new(data.name, data)
             light.location = point
             if self.kind == "SPOT":
-                light.rotation_euler = Vector(way).to_track_quat("-Z", "Y").to_euler()
+                light.rotation_euler = (DOWN if self.aim == "DOWN" else Vector(way)).to_track_quat("-Z", "Y").to_euler()
             context.collection.objects.link(light)
             made.append(light)
         return made
@@ -87,7 +90,8 @@ class Placing:
             layout.prop(self, name)
         layout.separator()
         for name in LIGHT_FIELDS:
-            layout.prop(self, name)
+            if name != "aim" or self.kind == "SPOT":
+                layout.prop(self, name)
 
     def shown(self):
         """Names of the operator's own properties that its panel shows."""

@@ -9,7 +9,9 @@ from mathutils import Matrix, Vector
 from . import edit, scene_lights
 from .core import photometry, surprises
 
-WAYS = [Vector((x, y, z)).normalized() for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z]
+FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
+CORNERS = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+WAYS = [Vector(way).normalized() for way in (*FACES, *CORNERS)]  # of a cube
 LAMP_M = 0.3  # of a double-sided mesh, only what is this near is taken for a lamp or wall that the light is stuck in
 
 
@@ -31,11 +33,11 @@ def records_of(context):
     users = {}
     for light in lights:
         users[light.data] = users.get(light.data, 0) + 1
-    here = set(context.scene.objects)
-    return [record_of(context, depsgraph, light, matrix, users[light.data], light in here) for light, matrix in lights.items()]
+    here, meshes = set(context.scene.objects), Meshes(depsgraph)
+    return [record_of(meshes, light, matrix, users[light.data], light in here) for light, matrix in lights.items()]
 
 
-def record_of(context, depsgraph, light, matrix, users, here):
+def record_of(meshes, light, matrix, users, here):
     """`here`: the light is one of the scene's own objects."""
     data = light.data
     axes = np.array(matrix.to_3x3()).T
@@ -47,18 +49,40 @@ def record_of(context, depsgraph, light, matrix, users, here):
         has_range=data.use_custom_distance, users=users, scale=scale,
         sheared=bool(abs(unit @ unit.T - np.eye(3)).max() > 1e-3), casts_shadow=data.use_shadow,
         own_nodes=data.use_nodes and (leaves is None or any(socket.is_linked for socket in leaves.inputs)),
-        inside="" if data.type == "SUN" else mesh_around(context.scene, depsgraph, matrix.translation),
+        inside="" if data.type == "SUN" else meshes.around(matrix.translation),
         hidden=here and not light.visible_get() and not light.chandelier.hidden_by_solo)
 
 
-def mesh_around(scene, depsgraph, point):
-    """The mesh whose back most rays from a point meet first; else nothing. Of a room, they meet the fronts."""
-    backs = []
-    for way in WAYS:
-        hit, place, normal, _, thing, _ = scene.ray_cast(depsgraph, point, way)
-        if hit and normal.dot(way) > 0 and ((place - point).length < LAMP_M or is_single_sided(thing)):
-            backs.append(thing.name)
-    return max(set(backs), key=backs.count) if len(backs) > len(WAYS) / 2 else ""
+class Meshes:
+    """All that a light may be stuck in, with boxes in the world, so that only what is around a light is looked at."""
+
+    def __init__(self, depsgraph):
+        self.depsgraph, self.placed, boxes = depsgraph, [], []
+        for instance in depsgraph.object_instances:
+            thing = instance.object
+            if thing.type == "MESH" and not thing.hide_render and len(thing.data.polygons):
+                matrix = instance.matrix_world.copy()
+                corners = np.array([matrix @ Vector(corner) for corner in thing.bound_box])
+                boxes.append((corners.min(axis=0), corners.max(axis=0)))
+                self.placed.append((thing.original, matrix))
+        self.boxes = np.array(boxes, float).reshape(-1, 2, 3)
+
+    def around(self, point):
+        """The name of a mesh that a point is inside of, or nothing."""
+        near = (self.boxes[:, 0] <= point).all(axis=1) & (self.boxes[:, 1] >= point).all(axis=1)
+        return next((self.placed[number][0].name for number in np.flatnonzero(near) if self.is_around(number, point)), "")
+
+    def is_around(self, number, point):
+        """Whether most rays from the point meet the mesh's back first; in a room, they meet fronts."""
+        thing, matrix = self.placed[number]
+        evaluated, to_local = thing.evaluated_get(self.depsgraph), matrix.inverted_safe()
+        origin, single_sided = to_local @ point, is_single_sided(thing)
+        backs = 0
+        for way in WAYS:
+            way = (to_local.to_3x3() @ way).normalized()
+            hit, place, normal, _ = evaluated.ray_cast(origin, way)
+            backs += hit and normal.dot(way) > 0 and (single_sided or (matrix @ place - point).length < LAMP_M)
+        return backs > len(WAYS) / 2
 
 
 def is_single_sided(thing):

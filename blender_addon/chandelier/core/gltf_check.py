@@ -88,9 +88,10 @@ def check(path, table):
         if not near.any():
             result.errors.append(f"{name}: is not in the file where it was meant to be")
             continue
-        scores = np.where(near, apart + abs(intensities - table.intensity[row]) / table.intensity[row]
-                          + [0 if node in name else 1 for node, _, _ in placed], np.inf)
-        best = int(scores.argmin())
+        numbers = np.flatnonzero(near)
+        misfit = apart[numbers] + abs(intensities[numbers] / table.intensity[row] - 1)
+        misfit += [0 if placed[number][0] in name else 1 for number in numbers]
+        best = int(numbers[misfit.argmin()])
         free[best] = False
         result.errors += [f"{name}: {what}" for what in differences(table, row, ways[row], *placed[best][1:])]
     result.extra = [placed[number][0] for number in np.flatnonzero(free)]

@@ -195,6 +195,18 @@ class Surprises(BlenderCase):
         room.data.flip_normals()
         self.assertEqual(self.found(), [])
 
+    def test_inside_an_instance_that_is_turned_and_scaled(self):
+        collection = bpy.data.collections.new("Bulbs")
+        bulb = self.box(2)
+        self.scene.collection.objects.unlink(bulb)
+        collection.objects.link(bulb)
+        instancer = self.add("Instancer", location=(4, 0, 0))
+        instancer.instance_type, instancer.instance_collection = "COLLECTION", collection
+        instancer.scale, instancer.rotation_euler = (0.1, 0.1, -0.1), (0.5, 0.6, 0.7)
+        self.good("In", location=(4, 0.02, 0))
+        self.good("Beside", location=(4.2, 0, 0))
+        self.assertEqual(self.found(), [("inside", "In")])
+
     def test_area_lights_become_spots_or_points_of_the_same_power(self):
         for kind in ("SPOT", "POINT"):
             light = self.good("Area", kind="AREA", energy=70, size=2, shape="SQUARE")

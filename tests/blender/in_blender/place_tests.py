@@ -90,12 +90,26 @@ class Place(BlenderCase):
         self.assertTrue(np.allclose(np.linalg.norm(places[:, :2] - (3, 0), axis=1), math.sqrt(2) + 0.5))
         self.assertEqual(sorted(set(places[:, 2].round(5).tolist())), [1.25, 2.75])
 
-    def test_spots_shine_inwards_and_away_from_faces(self):
+    def test_spots_around_an_object_shine_at_it(self):
         self.mesh()
         bpy.ops.chandelier.place_around(count=4, kind="SPOT")
         for light in self.lights():
             way = light.rotation_euler.to_quaternion() @ Vector((0, 0, -1))
             self.assertAlmostEqual(way.dot(-light.location.normalized()), 1, places=5)
+
+    def test_spots_can_shine_down(self):
+        self.curve("POLY", ((0, 0, 3), (4, 0, 3)))
+        bpy.ops.chandelier.place_along_curve(count=3, kind="SPOT", aim="DOWN")
+        bpy.context.view_layer.update()
+        for light in self.lights():
+            self.assertClose(light.matrix_world.to_quaternion() @ Vector((0, 0, -1)), (0, 0, -1))
+
+    def test_spots_shine_out_of_faces(self):
+        self.mesh()
+        bpy.ops.chandelier.place_on_mesh(kind="SPOT", count=0, spacing=0)
+        for light in self.lights():
+            way = light.rotation_euler.to_quaternion() @ Vector((0, 0, -1))
+            self.assertAlmostEqual(way.dot(light.location.normalized()), 1, places=5)
 
     def test_on_faces_and_vertices(self):
         cube = self.mesh(location=(0, 0, 5))
