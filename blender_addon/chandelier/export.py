@@ -63,7 +63,7 @@ class CHANDELIER_OT_export(bpy.types.Operator, ExportHelper):
         for line in check.errors:
             self.report({"ERROR"}, line)
         for name in check.extra:
-            self.report({"WARNING"}, f"{name}: is in the file, but hidden in the viewport")
+            self.report({"WARNING"}, f"{name}: is in the file, though Blender does not show or render it")
         self.report({"INFO"}, f"{check.lights} lights in {self.filepath}")
         return {"FINISHED"}
 

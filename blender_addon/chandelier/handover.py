@@ -54,7 +54,7 @@ class Handover:
         try:
             program = tools.find("chandelier-bake", tool_folders())
             check = export.export(context, str(pack) + ".glb")
-            self.notes = [*check.errors, *(f"{name}: is hidden in the viewport, and in the pack" for name in check.extra)]
+            self.notes = [*check.errors, *(f"{name}: is in the pack, though Blender does not show or render it" for name in check.extra)]
             cache = pathlib.Path(bpy.app.tempdir) / "chandelier-cache"
             self.bake = tools.Job(tools.bake_command(program, str(pack) + ".glb", pack, cache))
         except (tools.ToolError, RuntimeError, ValueError, OSError) as error:
