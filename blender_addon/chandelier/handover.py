@@ -73,7 +73,7 @@ class Handover:
                 self.done = "Baked"
                 if self.play_after or self.player:
                     self.play(self.play_command)
-        if self.player and not self.player.is_running():
+        elif self.player and not self.player.is_running():
             self.error, self.player = self.player.error or self.error, None
         return self.bake is not None or self.player is not None
 
