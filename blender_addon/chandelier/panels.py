@@ -7,6 +7,7 @@ import bpy
 
 from .core import surprises
 from .handover import handover, pack_path
+from .preview import bill_lines
 
 NAMES_SHOWN = 6  # of lights with the same surprise
 CHARACTER_PX = 7  # about, of a label at the scale 1
@@ -100,8 +101,6 @@ class CHANDELIER_PT_lights(Sidebar, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("chandelier.edit_lights", text="Edit", icon="MODIFIER")
         row.operator("chandelier.solo", text="Solo", icon="SOLO_ON")
-        layout.operator("chandelier.select_cluster", icon="GROUP")
-        layout.operator("chandelier.select_over_budget", icon="ERROR")
         for factor, icon in ((0.8, "REMOVE"), (1.25, "ADD")):
             row.operator("chandelier.strength", text="", icon=icon).factor = factor
 
@@ -132,6 +131,31 @@ class CHANDELIER_PT_surprises(Sidebar, bpy.types.Panel):
             box.operator_menu_enum(rule.fix, "kind", text="Convert to").rule = rule.id
         elif rule.fix:
             box.operator(rule.fix).rule = rule.id
+
+
+class CHANDELIER_PT_clusters(Sidebar, bpy.types.Panel):
+    bl_label = "Light Clusters"
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.chandelier_overlay, "show", text="")
+
+    def draw(self, context):
+        layout, shown = self.layout, context.scene.chandelier_overlay
+        for text, is_bad in bill_lines(context.scene) if shown.show else ():
+            box = layout.column()
+            box.alert = is_bad
+            wrapped(box, context, text)
+        column = layout.column(align=True)
+        column.active = shown.show
+        row = column.row(align=True)
+        row.prop(shown, "links", toggle=True)
+        row.prop(shown, "labels", toggle=True)
+        row = column.row(align=True)
+        row.prop(shown, "d_min", toggle=True)
+        row.prop(shown, "ranges", toggle=True)
+        row = layout.row(align=True)
+        row.operator("chandelier.select_cluster")
+        row.operator("chandelier.select_over_budget", text="Over-Budget")
 
 
 class CHANDELIER_PT_shadows(Sidebar, bpy.types.Panel):
@@ -184,6 +208,6 @@ class CHANDELIER_PT_scene(Properties, bpy.types.Panel):
         draw_shadow_settings(self.layout, context.scene.chandelier)
 
 
-CLASSES = (CHANDELIER_PT_handover, CHANDELIER_PT_place, CHANDELIER_PT_lights, CHANDELIER_PT_shadows, CHANDELIER_PT_surprises,
+CLASSES = (CHANDELIER_PT_handover, CHANDELIER_PT_place, CHANDELIER_PT_lights, CHANDELIER_PT_clusters, CHANDELIER_PT_shadows, CHANDELIER_PT_surprises,
            CHANDELIER_PT_light, CHANDELIER_PT_scene)
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -11,19 +11,32 @@ from . import light_list
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
+def tag(settings, context):
+    """Changes of a script's properties tell nobody by themselves: the light's data counts as changed."""
+    settings.id_data.update_tag()
+
+
+def redraw(settings, context):
+    """The 3D views."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
 class LightSettings(bpy.types.PropertyGroup):
     priority: IntProperty(
         name="Priority", description="Who keeps a shadow map of its own when the budget ends: higher first",
-        default=128, min=0, max=255, override=OVERRIDABLE)
+        default=128, min=0, max=255, override=OVERRIDABLE, update=tag)
     dynamic: BoolProperty(
         name="Dynamic", description="Something other than this file's animation will move the light or change it",
-        default=False, override=OVERRIDABLE)
+        default=False, override=OVERRIDABLE, update=tag)
     cluster: BoolProperty(
         name="Cluster", description="The light may share a shadow map; off: it gets one of its own",
-        default=True, override=OVERRIDABLE)
+        default=True, override=OVERRIDABLE, update=tag)
     group: StringProperty(
         name="Group", description="Lights with the same group share one shadow map, and with no other light. Empty: none",
-        default="", override=OVERRIDABLE)
+        default="", override=OVERRIDABLE, update=tag)
 
 
 class ObjectSettings(bpy.types.PropertyGroup):
@@ -35,27 +48,30 @@ class SceneSettings(bpy.types.PropertyGroup):
     """Names and limits are chandelier-play's."""
     d_init: FloatProperty(
         name="Distance", description="Lights closer than this to a cluster's centre share its shadow map, at the camera; "
-        "0: each light has its own", default=0.5, min=0, soft_max=10, unit="LENGTH")
+        "0: each light has its own", default=0.5, min=0, soft_max=10, unit="LENGTH", update=redraw)
     distance_scaling: EnumProperty(
-        name="Farther Away", description="How the distance follows the distance to the camera", default="grow", items=(
+        name="Farther Away", update=redraw, description="How the distance follows the distance to the camera", default="grow", items=(
             ("grow", "Grows", "Lights that are far from the camera share more: times 1 + |C| / z_far"),
             ("paper-formula", "Shrinks", "As LightCluster's formula is printed: times 1 - |C| / z_far"),
             ("none", "Stays", "The same everywhere: nothing changes when the camera moves")))
     z_far: FloatProperty(
         name="Far Distance", description="Distance from the camera that scales it by one", default=30, min=0.001, soft_max=1000,
-        unit="LENGTH")
+        unit="LENGTH", update=redraw)
     face_size: IntProperty(
-        name="Face Size", description="Width of one face of a cube shadow map, texels", default=512, min=16, max=16384)
-    filter: EnumProperty(name="Filter", description="How shadow maps are read", default="pcss", items=(
+        name="Face Size", description="Width of one face of a cube shadow map, texels", default=512, min=16, max=16384,
+        update=redraw)
+    filter: EnumProperty(name="Filter", update=redraw, description="How shadow maps are read", default="pcss", items=(
         ("pcss", "Soft (PCSS)", "Shadows soften with distance; a cluster stands for an area light"),
         ("pcf", "Smoothed (PCF)", "Edges are smoothed by the same width everywhere"),
         ("hard", "Hard", "One comparison; only for lights that share no shadow map: with distance 0")))
     budget_maps: IntProperty(
-        name="Maps", description="Most shadow maps of a frame; the distance is chosen to meet it. 0: no limit", default=0, min=0)
+        name="Maps", description="Most shadow maps of a frame; the distance is chosen to meet it. 0: no limit", default=0, min=0,
+        update=redraw)
     budget_mib: IntProperty(
         name="MiB", description="Most depth of all shadow maps of a frame, MiB; the distance is chosen to meet it. 0: no limit",
-        default=0, min=0)
-    view: EnumProperty(name="Seen From", description="Whose distance to the lights counts", default="camera", items=(
+        default=0, min=0,
+        update=redraw)
+    view: EnumProperty(name="Seen From", update=redraw, description="Whose distance to the lights counts", default="camera", items=(
         ("camera", "Scene Camera", "The scene's camera, as chandelier-play starts"),
         ("viewport", "Viewport", "The 3D view that is drawn")))
     active_light: IntProperty(

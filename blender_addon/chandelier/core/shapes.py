@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the overlay draws of a selection of shadow maps, as arrays of points and line segments with their colours."""
+
+import colorsys
+import zlib
+from dataclasses import dataclass, field
+
+import numpy as np
+
+CIRCLE_SEGMENTS = 48
+OUT_OF_VIEW = (0.45, 0.45, 0.45, 0.6)
+OVER_BUDGET = (1.0, 0.08, 0.05, 1.0)
+AXES = ((0, 1), (1, 2), (2, 0))  # planes of the three circles that stand for a sphere
+
+
+@dataclass
+class Lines:
+    """Segments: both ends of each after the other."""
+    ends: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.float32))  # (2 n, 3), metres
+    colours: np.ndarray = field(default_factory=lambda: np.zeros((0, 4), np.float32))  # (2 n, 4)
+
+
+def colour_of(name):
+    """A cluster's, by its centre's name, so that it stays while others come and go. Red is kept for what is over budget."""
+    number = zlib.crc32(name.encode()) * 2654435761 % 2**32  # Knuth's: names that differ in a digit get other colours
+    hue = 0.08 + 0.84 * (number >> 16) / 65536
+    return (*colorsys.hsv_to_rgb(hue, 0.55 + 0.3 * (number >> 15 & 1), 0.8 + 0.2 * (number >> 14 & 1)), 1.0)
+
+
+def light_colours(center, over_budget, names):
+    """(n, 4): the cluster's colour, red where the budget takes a light's own map, grey out of view."""
+    colours = np.empty((len(center), 4), np.float32)
+    colours[:] = OUT_OF_VIEW
+    for number in np.unique(center[center >= 0]):
+        colours[center == number] = colour_of(names[number])
+    colours[over_budget] = OVER_BUDGET
+    return colours
+
+
+def links(position, center, colours):
+    """From each light that takes another's map to that light."""
+    member = np.flatnonzero((center >= 0) & (center != np.arange(len(center))))
+    ends = np.stack([position[member], position[center[member]]], axis=1).reshape(-1, 3)
+    return Lines(np.ascontiguousarray(ends, np.float32), np.repeat(colours[member], 2, axis=0))
+
+
+def spheres(centers, radii, colours):
+    """Three circles of each."""
+    angle = np.linspace(0, 2 * np.pi, CIRCLE_SEGMENTS + 1)
+    circles = np.zeros((3, CIRCLE_SEGMENTS + 1, 3), np.float32)
+    for circle, (a, b) in zip(circles, AXES):
+        circle[:, a], circle[:, b] = np.cos(angle), np.sin(angle)
+    unit = np.stack([circles[:, :-1], circles[:, 1:]], axis=2).reshape(-1, 3)
+    ends = centers[:, None, :] + np.asarray(radii)[:, None, None] * unit
+    return Lines(np.ascontiguousarray(ends.reshape(-1, 3), np.float32), np.repeat(colours, len(unit), axis=0))

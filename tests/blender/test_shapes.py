@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+import pytest
+
+import core.shapes as shapes
+
+POSITION = np.array([(0, 0, 0), (1, 0, 0), (0, 2, 0), (5, 5, 5)], np.float32)
+CENTER = np.array([0, 0, 2, -1])
+NAMES = ["a", "b", "c", "d"]
+
+
+def test_members_have_their_centres_colour_and_others_another():
+    colours = shapes.light_colours(CENTER, np.zeros(4, bool), NAMES)
+    assert (colours[0] == colours[1]).all()
+    assert (colours[0] != colours[2]).any()
+    assert colours[3] == pytest.approx(shapes.OUT_OF_VIEW)
+
+
+def test_over_budget_is_red_whatever_the_cluster():
+    colours = shapes.light_colours(CENTER, np.array([False, True, False, False]), NAMES)
+    assert colours[1] == pytest.approx(shapes.OVER_BUDGET)
+
+
+def test_no_cluster_is_as_red_as_what_is_over_budget():
+    for number in range(2000):
+        red, green, blue, _ = shapes.colour_of(f"lamp {number}")
+        assert max(green, blue) > 0.3 * red
+
+
+def test_names_that_differ_in_a_digit_differ_in_colour():
+    hues = {tuple(round(part, 3) for part in shapes.colour_of(f"Ring {ring} lamp 0")) for ring in range(50)}
+    assert len(hues) >= 48
+
+
+def test_links_go_from_members_to_centres_only():
+    colours = shapes.light_colours(CENTER, np.zeros(4, bool), NAMES)
+    lines = shapes.links(POSITION, CENTER, colours)
+    assert lines.ends.tolist() == [[1, 0, 0], [0, 0, 0]]
+    assert lines.colours.shape == (2, 4)
+
+
+def test_spheres_are_circles_of_their_radius():
+    lines = shapes.spheres(POSITION[:2], [2.0, 3.0], np.ones((2, 4), np.float32))
+    each = lines.ends.reshape(2, -1, 3)
+    for ends, center, radius in zip(each, POSITION, (2.0, 3.0)):
+        assert np.linalg.norm(ends - center, axis=1) == pytest.approx(radius, rel=1e-5)
+    assert len(lines.colours) == len(lines.ends)
+    begin, end = lines.ends[0::2], lines.ends[1::2]
+    assert np.linalg.norm(begin - end, axis=1).max() < 3.0 * 2 * np.pi / shapes.CIRCLE_SEGMENTS * 1.01
+
+
+def test_nothing_gives_nothing():
+    empty = np.zeros((0, 3), np.float32)
+    assert len(shapes.links(empty, np.zeros(0, int), np.zeros((0, 4), np.float32)).ends) == 0
+    assert len(shapes.spheres(empty, [], np.zeros((0, 4), np.float32)).ends) == 0
