@@ -81,6 +81,7 @@ class CHANDELIER_PT_handover(Sidebar, bpy.types.Panel):
         layout.prop(settings, "bake_on_save")
         layout.prop(settings, "pack_path", text="")
         layout.operator("chandelier.export", icon="EXPORT")
+        layout.operator("chandelier.compare", icon="IMAGE_REFERENCE")
 
 
 class CHANDELIER_PT_place(Sidebar, bpy.types.Panel):

@@ -15,13 +15,13 @@ SIZE = (1280, 800)
 
 def missing():
     """The first program that is not here, or nothing."""
-    programs = [os.environ.get("CHANDELIER_BLENDER", "blender"), "Xvfb", "import"]
-    return next((program for program in programs if not shutil.which(program)), "")
+    if not run_in_blender.blender():
+        return "blender"
+    return next((program for program in ("Xvfb", "import") if not shutil.which(program)), "")
 
 
 def run(script, shots, timeout=180):
     """Blender's output; its pictures are in `shots`."""
-    blender = os.environ.get("CHANDELIER_BLENDER", "blender")
     read, write = os.pipe()
     server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24", "-nolisten", "tcp"],
                               pass_fds=[write], stderr=subprocess.DEVNULL)
@@ -30,8 +30,8 @@ def run(script, shots, timeout=180):
         with tempfile.TemporaryDirectory() as folder, os.fdopen(read) as number:
             variables = run_in_blender.environment(pathlib.Path(folder))
             variables.update(DISPLAY=f":{number.readline().strip()}", CHANDELIER_SHOTS=str(shots), LIBGL_ALWAYS_SOFTWARE="1")
-            command = [blender, "--factory-startup", "--enable-event-simulate", "--python-exit-code", "3", "--no-window-focus",
-                       "--window-geometry", "0", "0", *map(str, SIZE), "--python", HERE / "in_window" / script]
+            command = [run_in_blender.blender(), "--factory-startup", "--enable-event-simulate", "--python-exit-code", "3",
+                       "--no-window-focus", "--window-geometry", "0", "0", *map(str, SIZE), "--python", HERE / "in_window" / script]
             return subprocess.run(command, env=variables, capture_output=True, text=True, timeout=timeout)
     finally:
         server.terminate()
