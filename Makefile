@@ -9,7 +9,7 @@ PLAY := $(BUILD)/bin/chandelier-play
 BAKE := $(BUILD)/bin/chandelier-bake
 CPP_FILES := $(shell git ls-files '*.cpp' '*.h' 2>/dev/null)
 
-.PHONY: help setup build demo test test-mesa25 test-blender4 bench bench-baker bench-lightcluster fuzz addon format portable clean
+.PHONY: help setup build demo test test-mesa25 test-blender4 bench bench-baker bench-lightcluster fuzz addon addon-images format portable clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -27,6 +27,7 @@ help:
 	@echo "                  --scenes atrium,cornell --repeats 5', or OPTIONS=--quick to see that it works"
 	@echo "make fuzz         look for inputs that break the importer, the pack reader or the cache, SECONDS=60 each; what is found is kept"
 	@echo "make portable     build a chandelier-play that needs only glibc and a Vulkan loader, in build/portable/bin/"
+	@echo "make addon-images  make the pictures of blender_addon/README.md anew, in a Blender 3.4 under Xvfb"
 	@echo "make addon        pack the Blender add-on into build/blender/chandelier.zip, with the preview's library if it is built"
 	@echo "make format       clang-format every C++ file"
 	@echo "make clean        remove build/"
@@ -125,6 +126,10 @@ $(BUILD)/demo/%/report.html: $(BUILD)/demo/%.chandelier $(PLAY)
 
 addon:
 	$(PYTHON) blender_addon/make_zip.py
+
+# The pictures of blender_addon/README.md, from a Blender in a window of its own.
+addon-images: build
+	CHANDELIER_BUILD=$(CURDIR)/$(BUILD) CHANDELIER_BIN=$(CURDIR)/$(BUILD)/bin $(PYTHON) tests/blender/make_images.py
 
 format:
 	clang-format -i $(CPP_FILES)

@@ -20,10 +20,10 @@ def missing():
     return next((program for program in ("Xvfb", "import") if not shutil.which(program)), "")
 
 
-def run(script, shots, timeout=180):
+def run(script, shots, screen=SIZE, timeout=180):
     """Blender's output; its pictures are in `shots`."""
     read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24", "-nolisten", "tcp"],
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", f"{screen[0]}x{screen[1]}x24", "-nolisten", "tcp"],
                               pass_fds=[write], stderr=subprocess.DEVNULL)
     os.close(write)
     try:
@@ -31,7 +31,7 @@ def run(script, shots, timeout=180):
             variables = run_in_blender.environment(pathlib.Path(folder))
             variables.update(DISPLAY=f":{number.readline().strip()}", CHANDELIER_SHOTS=str(shots), LIBGL_ALWAYS_SOFTWARE="1")
             command = [run_in_blender.blender(), "--factory-startup", "--enable-event-simulate", "--python-exit-code", "3",
-                       "--no-window-focus", "--window-geometry", "0", "0", *map(str, SIZE), "--python", HERE / "in_window" / script]
+                       "--no-window-focus", "--window-geometry", "0", "0", *map(str, screen), "--python", HERE / "in_window" / script]
             return subprocess.run(command, env=variables, capture_output=True, text=True, timeout=timeout)
     finally:
         server.terminate()
