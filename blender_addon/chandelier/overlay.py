@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Draws the selection of shadow maps over the 3D view: links from lights to their centres, spheres, names, and the bill."""
 
+import textwrap
+
 import blf
 import bpy
 import gpu
@@ -17,6 +19,7 @@ POINTS = "FLAT_COLOR" if bpy.app.version >= (4, 0) else "3D_FLAT_COLOR"
 LINES = "POLYLINE_FLAT_COLOR"
 MOST_LABELS = 200
 TEXT_PX = 12
+CHARACTER_EM = 0.55  # width of a character over the text's size, about
 WHITE = (1, 1, 1, 1)
 
 
@@ -110,11 +113,14 @@ class Overlay:
                 at = location_3d_to_region_2d(context.region, context.region_data, place)
                 if at:
                     draw_text(text, at.x + 10 * scale, at.y + 6 * scale, colour)
-        set_size(1.3 * TEXT_PX * scale)
-        top = context.region.height - 120 * scale
-        for row, (text, is_bad) in enumerate(bill_lines(scene)):
-            colour = shapes.OVER_BUDGET if is_bad else WHITE
-            draw_text(text, left_of(context) + 20 * scale, top - 22 * row * scale, colour)
+        size = 1.3 * TEXT_PX * scale
+        set_size(size)
+        left, right = (overlapped(context, kind) for kind in ("TOOLS", "UI"))
+        most = max(20, int((context.region.width - left - right - 40 * scale) / (CHARACTER_EM * size)))
+        lines = [(line, is_bad) for text, is_bad in bill_lines(scene) for line in textwrap.wrap(text, most)]
+        for row, (line, is_bad) in enumerate(lines):
+            draw_text(line, left + 20 * scale, context.region.height - (120 + 22 * row) * scale,
+                      shapes.OVER_BUDGET if is_bad else WHITE)
 
 
 OVERLAY = Overlay()
@@ -132,10 +138,10 @@ def labels_of(table, selection, colours):
             for each in shown]
 
 
-def left_of(context):
-    """The width of the toolbar, which may lie over the view."""
-    toolbar = next((region for region in context.area.regions if region.type == "TOOLS"), None)
-    return toolbar.width if toolbar and context.preferences.system.use_region_overlap else 0
+def overlapped(context, kind):
+    """The width of the toolbar or sidebar, which may lie over the view."""
+    bar = next((region for region in context.area.regions if region.type == kind), None)
+    return bar.width if bar and context.preferences.system.use_region_overlap else 0
 
 
 def set_size(pixels):

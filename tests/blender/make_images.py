@@ -15,6 +15,7 @@ import window_tool
 IMAGES = window_tool.HERE.parents[1] / "blender_addon" / "images"
 SCREEN = (1440, 1290)  # all panels are seen
 COLOURS = 256  # of a screenshot: an eighth of the bytes, and no difference to see
+SHADED = ("09_play", "10_cycles", "cornell_cycles")  # too smooth for that
 
 
 def tour(folder):
@@ -40,7 +41,8 @@ def main():
             image = Image.open(path).convert("RGB")
             if path.name.startswith("cornell"):
                 image = image.resize((image.width * 2, image.height * 2), Image.Resampling.NEAREST)
-            image.quantize(COLOURS).save(IMAGES / path.name, optimize=True)
+            image = image if path.stem in SHADED else image.quantize(COLOURS)
+            image.save(IMAGES / path.name, optimize=True)
             print(IMAGES / path.name)
 
 

@@ -123,13 +123,13 @@ def select(prefix):
 def around_columns():
     select("Column")
     in_view(lambda: bpy.ops.chandelier.place_around(
-        "EXEC_DEFAULT", True, count=8, distance=0.2, height=2.2, power=6, temperature=2600, range=5))
+        "EXEC_DEFAULT", True, count=8, distance=0.2, height=2.2, power=6, temperature=2600, range=14))
 
 
 def along_curve():
     select("Ring of candles")
     in_view(lambda: bpy.ops.chandelier.place_along_curve(
-        "EXEC_DEFAULT", True, count=16, power=8, temperature=3200, range=6))
+        "EXEC_DEFAULT", True, count=16, power=8, temperature=3200, range=14))
 
 
 def overlay(**values):
