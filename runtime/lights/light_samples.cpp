@@ -14,6 +14,7 @@ constexpr float far_away_m = 1e6f;
 constexpr float lift = 5e-4f;         // off the surface, of the distance to the eye: well above a ray's own rounding
 constexpr float middle_grey = 0.18f;  // shading/exposure.comp
 constexpr float darkest = 1e-6f;      // shading/exposure.comp
+constexpr uint32_t most_backs = 64;   // between the eye and what it sees
 
 bool is_directional(const pack::Light& light) {
   return light.type == pack::LightType::directional;
@@ -64,6 +65,20 @@ LightSamples::LightSamples(const SampledScene& scene, std::span<const uint32_t> 
   expose(settings.exposure_ev);
 }
 
+// What the g-buffer holds: backs are not drawn, but of double-sided materials. `way` is of unit length.
+std::optional<rays::Hit> LightSamples::first_seen(const glm::vec3& eye_ws, const glm::vec3& way) const {
+  float passed_m = 0.0f;
+  for (uint32_t backs = 0; backs < most_backs; ++backs) {
+    auto hit = scene_.rays.first_hit(eye_ws + way * passed_m, way, far_away_m);
+    ++rays_cast_;
+    if (!hit) return hit;
+    hit->distance_m += passed_m;
+    if (scene_.materials[hit->material].double_sided || glm::dot(hit->normal_ws, way) <= 0.0f) return hit;
+    passed_m = hit->distance_m + rays::PackRays::end_gap_m(eye_ws, eye_ws + way * hit->distance_m);
+  }
+  return std::nullopt;
+}
+
 void LightSamples::place_points(const Camera& camera, float aspect, const SampleSettings& settings) {
   const CameraAxes axes = axes_of(camera);
   const float half_height = std::tan(camera.yfov_rad * 0.5f);
@@ -76,8 +91,7 @@ void LightSamples::place_points(const Camera& camera, float aspect, const Sample
         (static_cast<float>(cell / settings.columns) + scattered(place + 1)) / static_cast<float>(settings.rows);
     const glm::vec3 way = glm::normalize(axes.forward + axes.right * ((2.0f * x - 1.0f) * half_height * aspect) +
                                          axes.up * ((1.0f - 2.0f * y) * half_height));
-    const auto hit = scene_.rays.first_hit(camera.eye_ws, way, far_away_m);
-    ++rays_cast_;
+    const auto hit = first_seen(camera.eye_ws, way);
     if (!hit || scene_.materials[hit->material].unlit) continue;
     const glm::vec3 normal = glm::dot(hit->normal_ws, way) > 0.0f ? -hit->normal_ws : hit->normal_ws;
     const glm::vec3 dark =

@@ -76,6 +76,7 @@ class LightSamples {
  private:
   static constexpr uint8_t unknown = 2;
 
+  std::optional<rays::Hit> first_seen(const glm::vec3& eye_ws, const glm::vec3& way) const;
   void place_points(const Camera& camera, float aspect, const SampleSettings& settings);
   void light_points(const Camera& camera);
   void expose(const std::optional<float>& exposure_ev);

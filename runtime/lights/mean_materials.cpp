@@ -72,7 +72,8 @@ std::vector<MeanMaterial> mean_materials(const pack::View& pack) {
                      .emissive = m.emissive * mean(m.emissive_texture),
                      .metallic = m.metallic_factor * metal_rough.b,
                      .roughness = m.roughness_factor * metal_rough.g,
-                     .unlit = m.unlit != 0});
+                     .unlit = m.unlit != 0,
+                     .double_sided = m.double_sided != 0});
   }
   return means;
 }

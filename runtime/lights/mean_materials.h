@@ -15,6 +15,7 @@ struct MeanMaterial {
   float metallic;
   float roughness;
   bool unlit;
+  bool double_sided;
 };
 
 /// One per material of the pack. A texture's mean is that of its smallest level.

@@ -52,6 +52,22 @@ TEST(LightSamplesTest, PointsAreLitFromTheirSideOfTheWallAlone) {
   EXPECT_GT(right, 500u);
 }
 
+// As it is drawn: a room's ceiling does not hide the room from above, but where its material has two sides.
+TEST(LightSamplesTest, BacksHideNothing) {
+  for (const bool double_sided : {false, true}) {
+    test::Scene scene;
+    pack::Material material = test::plain_material(glm::vec3(0.5f));
+    scene.add(test::level_square(glm::vec3(0), 4), scene.add_material(material));
+    material.double_sided = double_sided ? 1 : 0;
+    scene.add(test::quad({0, 4, 0}, {4, 0, 0}, {0, 0, 4}), scene.add_material(material));  // its front looks down
+    scene.lights.push_back(test::point_light({0, 2, 0}, 10, 8));
+    const Sampled s(scene);
+    ASSERT_GT(s.samples->points().size(), 1000u);
+    for (const auto& point : s.samples->points()) EXPECT_NEAR(point.position_ws.y, double_sided ? 4.0f : 0.0f, 0.01f);
+    EXPECT_EQ(s.samples->reach(0).empty(), double_sided);
+  }
+}
+
 // What a light adds is what shading/brdf.glsl says: rough white paint, straight below the light.
 TEST(LightSamplesTest, AddsWhatTheShaderAdds) {
   test::Scene scene;
