@@ -19,7 +19,7 @@ sys.path[:0] = [str(SOURCE / "examples"), str(SOURCE / "blender_addon" / "chande
 from core import clusters  # noqa: E402
 from gltf_writer import Document, look_at  # noqa: E402
 
-SCENES, FRAMES = 8, 5  # frames of each scene
+SCENES, FRAMES = 6, 4  # frames of each scene
 SIZE = (320, 180)
 TYPES = {"point": 0, "spot": 1, "directional": 2}
 

@@ -127,7 +127,9 @@ TEST(Budget, CountsTheMapsOfAPlan) {
       settings.recipe.d_init_m = d_init_m;
       const uint64_t maps = predictor.plan(settings).stats.shadow_maps;
       EXPECT_EQ(counter.count(d_init_m, 1000), maps);
-      if (maps > 0) EXPECT_GT(counter.count(d_init_m, maps - 1), maps - 1);
+      if (maps > 0) {
+        EXPECT_GT(counter.count(d_init_m, maps - 1), maps - 1);
+      }
       RenderSettings smaller = settings;
       for (const float part : {1.0f, 0.9f, 0.5f}) {
         smaller.recipe.d_init_m = part * as_many_maps_up_to(settings.recipe, d_init_m);
