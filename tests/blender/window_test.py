@@ -50,15 +50,14 @@ class Window(unittest.TestCase):
 
     @classmethod
     def run_blender(cls, display):
-        variables = {**environment(cls.folder / "user"), "DISPLAY": display}
-        programs = variables.get("CHANDELIER_BIN", BIN)
         slow = cls.folder / "slow" / "chandelier-bake"
         slow.parent.mkdir()
         slow.write_text(SLOW_BAKE)
         slow.chmod(slow.stat().st_mode | stat.S_IXUSR)
-        command = [*blender(), "--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE),
-                   "--python-exit-code", "3", "--python", HERE / "in_blender" / "window_steps.py", "--", cls.folder, programs]
-        done = subprocess.run(command, env=variables, timeout=PATIENCE_S, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        command = [blender(), "--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE),
+                   "--python-exit-code", "3", "--python", HERE / "in_blender" / "window_steps.py", "--", cls.folder, BIN]
+        done = subprocess.run(command, env={**environment(cls.folder / "user"), "DISPLAY": display}, timeout=PATIENCE_S,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         keep = os.environ.get("CHANDELIER_SCREENSHOTS")  # a folder, for whoever wants to look
         if keep:
             for path in cls.folder.glob("*.png"):

@@ -30,7 +30,7 @@ def run(script, shots, screen=SIZE, timeout=180):
         with tempfile.TemporaryDirectory() as folder, os.fdopen(read) as number:
             variables = run_in_blender.environment(pathlib.Path(folder))
             variables.update(DISPLAY=f":{number.readline().strip()}", CHANDELIER_SHOTS=str(shots), LIBGL_ALWAYS_SOFTWARE="1")
-            command = [*run_in_blender.blender(), "--factory-startup", "--enable-event-simulate", "--python-exit-code", "3",
+            command = [run_in_blender.blender(), "--factory-startup", "--enable-event-simulate", "--python-exit-code", "3",
                        "--no-window-focus", "--window-geometry", "0", "0", *map(str, screen), "--python", HERE / "in_window" / script]
             return subprocess.run(command, env=variables, capture_output=True, text=True, timeout=timeout)
     finally:

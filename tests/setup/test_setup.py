@@ -21,7 +21,7 @@ class Setup(unittest.TestCase):
             return subprocess.run(["/bin/bash", script, *arguments], env={"PATH": folder}, capture_output=True, text=True)
 
     def test_scripts_parse(self):
-        for script in ("setup/install.sh", "setup/mesa25.sh", "setup/blender4.sh", "tests/blender/in_root.sh", ".ci/run"):
+        for script in ("setup/install.sh", "setup/mesa25.sh", "setup/blender4.sh", "setup/blender4_run.sh", ".ci/run"):
             result = subprocess.run(["bash", "-n", os.path.join(ROOT, script)], capture_output=True, text=True)
             self.assertEqual((result.returncode, result.stderr), (0, ""), script)
             self.assertTrue(os.access(os.path.join(ROOT, script), os.X_OK), script)
@@ -65,6 +65,12 @@ class Setup(unittest.TestCase):
             result = self.with_path_of(("mkdir", "find", "dirname"), os.path.join(ROOT, "setup", "mesa25.sh"), folder)
         self.assertEqual(result.returncode, 3)
         self.assertEqual(result.stderr, "setup/mesa25.sh: error: Mesa 25 cannot be had: this system has no apt\n")
+
+    def test_blender4_says_what_it_lacks(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = self.with_path_of(("mkdir", "dirname", "id"), os.path.join(ROOT, "setup", "blender4.sh"), folder)
+        self.assertEqual(result.returncode, 3)
+        self.assertRegex(result.stderr, r"^setup/blender4.sh: error: Blender 4.3 cannot be had: no[^\n]+\n$")
 
     def test_make_help_names_every_target(self):
         with open(os.path.join(ROOT, "Makefile"), encoding="utf-8") as file:
