@@ -20,7 +20,7 @@ def missing():
     return next((program for program in ("Xvfb", "import") if not shutil.which(program)), "")
 
 
-def run(script, shots, screen=SIZE, timeout=180):
+def run(script, shots, screen=SIZE, timeout=600):
     """Blender's output; its pictures are in `shots`."""
     read, write = os.pipe()
     server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", f"{screen[0]}x{screen[1]}x24", "-nolisten", "tcp"],
