@@ -116,5 +116,6 @@ def differences(table, row, way, matrix, light):
     if table.type[row] != photometry.POINT:
         forward = -matrix[:3, 2] / np.linalg.norm(matrix[:3, 2])
         if forward @ way < 0.9999:
-            out.append(f"shines to {tuple(forward.round(3))} in the file, meant was {tuple(way.round(3))}")
+            written, meant = (", ".join(f"{part:g}" for part in vector.round(3) + 0.0) for vector in (forward, way))
+            out.append(f"shines to ({written}) in the file, meant was ({meant})")
     return out

@@ -203,7 +203,7 @@ class Checked(GltfCase):
     def test_a_turned_spot(self):
         def turn(gltf, nodes, lights):
             nodes["Spot"]["rotation"] = [0, 0, 0, 1]
-        self.assert_told(turn, "Spot", "shines to")
+        self.assert_told(turn, "Spot", "shines to (0, 0, -1) in the file, meant was (0, -1, 0)")
 
     def test_files_that_are_none(self):
         table = part("scene_lights").read(bpy.context.evaluated_depsgraph_get())
