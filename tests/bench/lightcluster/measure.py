@@ -164,8 +164,7 @@ class Evaluation:
         """As little error as its share of the paper selection's maps allows, drawn with the same exposure."""
         maps = max(1, math.floor(ERROR_DRIVEN_SHARE * row["clusters"] + 1e-6))
         stats = player.draw("chandelier", "error_driven", "--max-shadow-maps", maps, "--exposure", made["exposure_ev"])
-        select = next(stage for stage in stats["stages"] if stage["name"] == "select")
-        row["error_driven"] = {"shadow_maps": stats["counters"]["shadow_maps"], "select_ms": select["cpu_ms"],
+        row["error_driven"] = {"shadow_maps": stats["counters"]["shadow_maps"],
                                "rmse": play.rmse(play.picture(player, "reference"), play.picture(player, "error_driven"))}
 
     def add_paths(self, name, player):

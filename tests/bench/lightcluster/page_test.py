@@ -40,8 +40,7 @@ def row(d_init_m, clusters, ratio, searched, changed):
             "counters": counters(clusters, changed["visibility_mib"]),
             "predicted": counters(clusters, changed["visibility_mib"], changed["predicted_triangles"]),
             "expected_rmse": changed["expected_rmse"][clusters],
-            "error_driven": {"shadow_maps": changed["error_driven_maps"], "rmse": changed["error_driven_rmse"],
-                             "select_ms": 3.0},
+            "error_driven": {"shadow_maps": changed["error_driven_maps"], "rmse": changed["error_driven_rmse"]},
             "filters": {name: filters([900.0, 1000.0, 3000.0], [0.9 * ms, ms, 3 * ms]) for name in ("pcf", "pcss")}}
 
 
