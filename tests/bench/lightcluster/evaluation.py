@@ -123,7 +123,9 @@ def prediction_blocks(results):
 def path_blocks(results):
     return [Heading(2, "A moving camera (section 5.6)"), Paragraph(
         "How many lights take another map than a frame ago, and how far the picture is from the same view with every light at its "
-        "map of a frame ago: what the selection changes and the camera's motion does not explain. Means over the frames, drawn at "
+        "map of a frame ago: what the selection changes and the camera's motion does not explain. Error-driven selection gives some "
+        "lights shares of several maps; they count by the largest, and what changes of their shares beside that is not measured, so "
+        "that its figures are too low. Means over the frames, drawn at "
         f"{PATH_SIZE} with faces of {PATH_FACE_SIZE}²."),
         tables.path_table(results)]
 
