@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "shadows/store/cube_bytes.h"
+
 namespace chandelier::player {
 namespace {
 
@@ -27,7 +29,9 @@ void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budg
   const FrameStats& stats = plan.prediction.stats;
   const bool by_error = named.recipe.select == Select::error_driven;
   const std::string how = by_error ? "selection by error" : fmt::format("d-init {:.4g} m", named.recipe.d_init_m);
-  const bool is_limited = budget.max_shadow_maps || budget.max_shadow_bytes;
+  const FrameStats one_each{.shadow_maps = stats.lights_in_view,
+                            .shadow_bytes = stats.lights_in_view * cube_bytes(named.recipe.face_size_px)};
+  const bool is_limited = !keeps(one_each, budget);
   if (!plan.keeps_budget)
     fmt::print(stderr, "chandelier-play: warning: {}: no {} keeps the budget; {} shadow maps, {} bytes are left\n",
                named.preset, by_error ? "selection" : "d-init", stats.shadow_maps, stats.shadow_bytes);
@@ -40,8 +44,7 @@ void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budg
                is_limited ? "maps or bytes allow no less"
                : by_error ? "more maps make no less"
                           : "no d-init makes less");
-  const bool is_whole = !by_error && named.recipe.d_init_m == 0.0f;
-  if (is_whole || !is_limited || !plan.keeps_budget || named.shared_maps->empty()) return;
+  if (!is_limited || !plan.keeps_budget || named.shared_maps->empty()) return;
   fmt::print(stderr, "{}: over budget with a shadow map for each of {} lights: {} makes {}; without their own: {}\n",
              named.preset, stats.lights_in_view, how, stats.shadow_maps, in_words(*named.shared_maps));
 }
@@ -57,17 +60,21 @@ std::vector<SharedMap> shared_maps(const pack::File& pack, const LightList& list
   return shared;
 }
 
+void apply_budget(const Budget& budget, NamedRecipe& named, RenderSettings& settings, Predictor& predictor,
+                  const pack::File& pack) {
+  if (!budget.is_given() || named.recipe.select == Select::per_light) return;
+  const BudgetedPlan plan = keep_budget(predictor, settings, budget);
+  named.recipe = settings.recipe = plan.recipe;
+  named.shared_maps = shared_maps(pack, plan.prediction.plan.list);
+  named.expected_rmse = plan.expected_rmse;
+  tell(named, plan, budget);
+}
+
 void apply_budget(Options& options, const NamedCamera& camera, const pack::File& pack) {
-  if (!options.budget.is_given()) return;
   Predictor predictor(pack.view());
   for (NamedRecipe& named : options.recipes) {
-    if (named.recipe.select == Select::per_light) continue;
-    const BudgetedPlan plan =
-        keep_budget(predictor, render_settings(options, named.recipe, camera.camera, {}), options.budget);
-    named.recipe = plan.recipe;
-    named.shared_maps = shared_maps(pack, plan.prediction.plan.list);
-    named.expected_rmse = plan.expected_rmse;
-    tell(named, plan, options.budget);
+    RenderSettings settings = render_settings(options, named.recipe, camera.camera, {});
+    apply_budget(options.budget, named, settings, predictor, pack);
   }
 }
 

@@ -11,8 +11,13 @@ namespace chandelier::player {
 /// the list's order.
 std::vector<SharedMap> shared_maps(const pack::File& pack, const LightList& list);
 
-/// Where a budget is given, gives each recipe with light clusters the d_init that keeps it, and tells error-driven
-/// selection the budget; says on stderr what that means for the camera at the start.
+/// Where a budget is given, gives a recipe with light clusters the d_init that keeps it, and tells error-driven
+/// selection the budget; says on stderr what that means for the view of `settings`, which get the recipe too.
+void apply_budget(const Budget& budget, NamedRecipe& named, RenderSettings& settings, Predictor& predictor,
+                  const pack::File& pack);
+
+/// The same for all recipes and the camera at the start. Not for a comparison, whose second side is exposed as the
+/// first was drawn.
 void apply_budget(Options& options, const NamedCamera& camera, const pack::File& pack);
 
 }  // namespace chandelier::player

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "player/budget.h"
 #include "player/image_files.h"
 #include "player/metrics/color_maps.h"
 #include "player/metrics/flip.h"
@@ -24,19 +25,27 @@ constexpr uint32_t kFramesUnlessAsked = 5;
 constexpr uint32_t kFramesBesideTruth = 1;  // which takes seconds for each, and whose time tells nothing
 
 struct Side {
+  NamedRecipe named;
   RenderSettings settings;
   std::vector<FrameStats> frames;
   Picture picture;
 };
 
-// Where the machine slows down for a while, both sides get their share of it.
-void draw_in_turns(Renderer& renderer, uint32_t frames, Side& a, Side& b) {
+// Where the machine slows down for a while, both sides get their share of it. What keeps a budget depends on the
+// exposure: b's is planned once a's is known.
+void draw_in_turns(Renderer& renderer, const pack::File& pack, const Budget& budget, uint32_t frames, Side& a,
+                   Side& b) {
+  Predictor predictor(pack.view());
+  apply_budget(budget, a.named, a.settings, predictor, pack);
   renderer.warm_up(a.settings);
-  renderer.warm_up(b.settings);
   for (uint32_t i = 0; i < frames; ++i) {
     a.frames.push_back(renderer.draw(a.settings));
     if (i + 1 == frames) a.picture = renderer.read_back();
-    b.settings.exposure_ev = a.frames.front().exposure_ev;
+    if (i == 0) {
+      b.settings.exposure_ev = a.frames.front().exposure_ev;
+      apply_budget(budget, b.named, b.settings, predictor, pack);
+      renderer.warm_up(b.settings);
+    }
     b.frames.push_back(renderer.draw(b.settings));
   }
   b.picture = renderer.read_back();
@@ -48,13 +57,13 @@ Run side_run(const Options& options, const NamedCamera& camera, const gpu::Devic
   run.pack = options.pack.filename().string();
   run.device = device.name;
   run.driver = device.driver;
-  run.preset = options.recipes[index].preset;
+  run.preset = side.named.preset;
   run.camera = camera;
   run.settings = side.settings;
   run.frames = static_cast<uint32_t>(side.frames.size());
   run.stats = medians(side.frames);
-  run.shared_maps = options.recipes[index].shared_maps;
-  run.expected_rmse = options.recipes[index].expected_rmse;
+  run.shared_maps = side.named.shared_maps;
+  run.expected_rmse = side.named.expected_rmse;
   const bool same = options.recipes[0].preset == options.recipes[1].preset;
   const std::string stem = same ? fmt::format("{}_{}", run.preset, index == 0 ? 'a' : 'b') : run.preset;
   run.image = stem + ".png";
@@ -120,15 +129,16 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
           {"difference", {{"image", comparison.difference_image}, {"scale_shown", comparison.heat_scale}}}};
 }
 
-void run_comparison(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer,
-                    const VisibilitySource& visibility) {
+void run_comparison(const Options& options, const NamedCamera& camera, const pack::File& pack,
+                    const gpu::Device& device, Renderer& renderer, const VisibilitySource& visibility) {
   make_folder(options.report);
-  Side a;
-  Side b;
-  a.settings = render_settings(options, options.recipes[0].recipe, camera.camera, visibility);
-  b.settings = render_settings(options, options.recipes[1].recipe, camera.camera, visibility);
+  Side a{.named = options.recipes[0]};
+  Side b{.named = options.recipes[1]};
+  a.settings = render_settings(options, a.named.recipe, camera.camera, visibility);
+  b.settings = render_settings(options, b.named.recipe, camera.camera, visibility);
   const bool truth = std::any_of(options.recipes.begin(), options.recipes.end(), traces_rays);
-  draw_in_turns(renderer, options.frames.value_or(truth ? kFramesBesideTruth : kFramesUnlessAsked), a, b);
+  draw_in_turns(renderer, pack, options.budget,
+                options.frames.value_or(truth ? kFramesBesideTruth : kFramesUnlessAsked), a, b);
 
   Comparison comparison;
   comparison.a = side_run(options, camera, device, a, 0);

@@ -43,8 +43,9 @@ std::vector<float> shown_differences(const Picture& a, const Picture& b);
 float heat_scale(std::vector<float> values);
 nlohmann::ordered_json to_json(const Comparison& comparison);
 
-/// Draws both recipes in turns and writes pictures, difference.png, flip.png, comparison.json and report.html. Throws.
-void run_comparison(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer,
-                    const VisibilitySource& visibility);
+/// Draws both recipes in turns, within the budget, and writes pictures, difference.png, flip.png, comparison.json and
+/// report.html. Throws.
+void run_comparison(const Options& options, const NamedCamera& camera, const pack::File& pack,
+                    const gpu::Device& device, Renderer& renderer, const VisibilitySource& visibility);
 
 }  // namespace chandelier::player

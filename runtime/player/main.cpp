@@ -63,7 +63,7 @@ ValidationLog draw(const Options& options, const NamedCamera& camera, const pack
   Renderer renderer(device, pack);
   const VisibilitySource visibility = visibility_for(options.recipes, pack);
   if (options.mode == Mode::headless) run_headless(options, camera, device, renderer, visibility);
-  if (options.mode == Mode::compare) run_comparison(options, camera, device, renderer, visibility);
+  if (options.mode == Mode::compare) run_comparison(options, camera, pack, device, renderer, visibility);
   if (options.mode == Mode::path) run_path(options, device, renderer, visibility);
 #ifndef CHANDELIER_PORTABLE
   const pack::BakeInfo& info = *pack.view().bake_info;
@@ -79,7 +79,7 @@ int run(Options options) {
   if (!options.stats.empty()) check_writable(options.stats);
   const pack::File pack(options.pack);
   const NamedCamera camera = camera_of(options, pack);
-  apply_budget(options, camera, pack);
+  if (options.mode != Mode::compare) apply_budget(options, camera, pack);
   if (options.mode == Mode::predict) {
     run_prediction(options, camera, pack);
     return 0;

@@ -108,7 +108,7 @@ void read_budget(const Typed& typed, Options& options) {
   const std::string_view option = typed.max_shadow_maps    ? "--max-shadow-maps"
                                   : typed.max_shadow_bytes ? "--max-shadow-bytes"
                                                            : "--max-error";
-  if (typed.d_init) throw UsageError(fmt::format("{}: cannot be used with --d-init, which it chooses", option));
+  if (typed.d_init) throw UsageError(fmt::format("{}: cannot be used with --d-init, whose place it takes", option));
   if (std::none_of(options.recipes.begin(), options.recipes.end(),
                    [](const NamedRecipe& each) { return each.recipe.select != Select::per_light; }))
     throw UsageError(fmt::format("{}: needs light clusters, such as --preset lightcluster", option));
@@ -147,8 +147,8 @@ void read_path_mode(const Typed& typed, Options& options) {
   if (typed.predict) throw UsageError("--path: cannot be used with --predict");
   if (typed.max_shadow_maps || typed.max_shadow_bytes || typed.max_error)
     throw UsageError(
-        "--path: cannot be used with --max-shadow-maps, --max-shadow-bytes or --max-error, which choose d-init "
-        "for one view");
+        "--path: cannot be used with --max-shadow-maps, --max-shadow-bytes or --max-error, which are kept for "
+        "one view");
   if (typed.frames && *typed.frames < 2)
     throw UsageError(fmt::format("--path: needs --frames of 2 or more ({})", *typed.frames));
   options.mode = Mode::path;

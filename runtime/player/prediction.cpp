@@ -23,7 +23,9 @@ void print_table(const Run& run) {
   for (const Counter& counter : counters())
     fmt::print("  {:<22}{:>14}\n", counter.name, in_units(counter, run.stats.*counter.value));
   fmt::print("  {:<22}{:>14}\n", "expected_rmse_shown", fmt::format("{:.4f}", *run.expected_rmse));
-  fmt::print("  {:<22}{:>14}\n", "d_init_m", fmt::format("{:.4g}", run.settings.recipe.d_init_m));
+  const Recipe& recipe = run.settings.recipe;
+  if (recipe.select == Select::light_clusters || !(recipe.max_maps || recipe.max_rmse))
+    fmt::print("  {:<22}{:>14}\n", "d_init_m", fmt::format("{:.4g}", recipe.d_init_m));
 }
 
 }  // namespace

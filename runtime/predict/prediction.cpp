@@ -37,7 +37,7 @@ Prediction Predictor::plan(const RenderSettings& settings) {
 }
 
 double Predictor::expected_rmse(const RenderSettings& settings, const FramePlan& plan) {
-  if (plan.recipe.select == Select::per_light && plan.recipe.filter == Filter::hard) return 0.0;  // it is the reference
+  if (plan.recipe.filter == Filter::hard && plan.list.center == plan.list.pack_light) return 0.0;  // the reference
   const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
   return chandelier::expected_rmse(
       plan.list, plan.recipe, settings.camera, aspect,

@@ -226,11 +226,21 @@ class Predict(PlayTest):
         self.assertRegex(done.stderr, r"\Achandelier: over budget [^\n]* selection by error makes \d; [^\n]* and \d+ more\n\Z")
         drawn = self.stats("--preset", "chandelier", "--max-shadow-maps", 9)
         self.assertEqual((drawn["recipe"], drawn["lights_without_own_map"]), (told["recipe"], told["lights_without_own_map"]))
+        without = {each["light"] for each in told["lights_without_own_map"]}
+        self.assertEqual(len(without), told["counters"]["lights_in_view"] - told["counters"]["shadow_maps"])
         clusters, _ = self.predict("--preset", "lightcluster", "--max-shadow-maps", 9)
         self.assertLess(told["expected_rmse_shown"], 0.6 * clusters["expected_rmse_shown"])
         within, _ = self.predict("--preset", "chandelier", "--max-error", 0.05)
         self.assertLessEqual(within["expected_rmse_shown"], 0.05)
         self.assertLess(within["counters"]["shadow_maps"], 9)
+
+    def test_a_limit_that_holds_a_map_for_each_light_is_not_called_short(self):
+        _, done = self.predict("--preset", "chandelier", "--max-error", 0.05, "--max-shadow-maps", LIGHTS)
+        self.assertRegex(done.stderr, r"\Achandelier: selection by error makes [^\n]*\n\Z")
+        told, done = self.predict("--preset", "chandelier", "--max-error", 0)
+        self.assertEqual((told["counters"]["shadow_maps"], told["expected_rmse_shown"]), (LIGHTS, 0))
+        self.assertRegex(done.stderr, r"\Achandelier: selection by error makes [^\n]*\n\Z")
+        self.assertNotIn("d_init_m", done.stdout)
 
     def test_bytes_are_a_budget_too(self):
         told, _ = self.predict("--preset", "lightcluster", "--max-shadow-bytes", 1)
@@ -367,7 +377,8 @@ class Links(html.parser.HTMLParser):
 
 class Compare(PlayTest):
     def compare(self, *arguments, presets="reference,lightcluster", size=SMALL):
-        self.play_well(self.pack, "--compare", presets, "--report", "out/report", "--frames", 2, *size, *arguments)
+        done = self.play_well(self.pack, "--compare", presets, "--report", "out/report", "--frames", 2, *size, *arguments)
+        self.said = done.stderr
         self.report = self.folder / "out/report"
         comparison = json.loads((self.report / "comparison.json").read_text())
         schema_validator("comparison.schema.json").validate(comparison)
@@ -403,6 +414,18 @@ class Compare(PlayTest):
         self.assertGreater(comparison["rmse"]["linear"], 0)
         self.assertTrue(0 < comparison["flip"]["mean"] < 0.5 < comparison["ssim"] < 1)
         self.assertLess(comparison["b"]["counters"]["shadow_maps"], comparison["a"]["counters"]["shadow_maps"])
+
+    def test_a_budget_is_told_as_it_is_drawn(self):
+        """The second side is drawn with the first one's exposure, and what keeps a budget depends on that."""
+        for preset in ("chandelier", "lightcluster"):
+            drawn = self.compare("--max-error", 0.0379, presets=f"reference,{preset}")
+            side = drawn["b"]
+            self.assertIn(f"makes {side['counters']['shadow_maps']} shadow maps, expected", self.said)
+            self.play_well(self.pack, "--predict", "--stats", "p.json", "--preset", preset, "--max-error", 0.0379,
+                           "--exposure", repr(drawn["a"]["exposure_ev"]), *SMALL)
+            told = json.loads((self.folder / "p.json").read_text())
+            for what in ("recipe", "expected_rmse_shown", "lights_without_own_map"):
+                self.assertEqual(side[what], told[what])
 
     @unittest.skipUnless(shutil.which("compare"), "ImageMagick is not installed")
     def test_rmse_is_imagemagick_s(self):

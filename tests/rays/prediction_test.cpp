@@ -261,7 +261,7 @@ TEST(Budget, IsWhatSelectionByErrorKeeps) {
     EXPECT_LE(error.prediction.stats.shadow_maps, most);
     EXPECT_LE(*error.expected_rmse, before + 2e-6);
   }
-  EXPECT_NEAR(before, 0.0, 1e-6);
+  EXPECT_EQ(before, 0.0) << "a hard map for each light is what errors are measured against";
   const BudgetedPlan none = keep_budget(predictor, settings, {.max_shadow_bytes = 1});
   EXPECT_FALSE(none.keeps_budget);
   EXPECT_EQ(none.prediction.stats.shadow_maps, 1u);
