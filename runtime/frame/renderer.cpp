@@ -318,6 +318,7 @@ void Renderer::warm_up(const RenderSettings& settings) {
   RenderSettings tiny = settings;
   tiny.width = tiny.height = 32;
   tiny.recipe.face_size_px = 16;
+  if (tiny.recipe.select == Select::error_driven) tiny.recipe.select = Select::per_light;  // not to look at 32 x 32
   draw(tiny);
   impl_->make_room(settings, impl_->plan(settings));
 }

@@ -37,8 +37,8 @@ float as_many_maps_up_to(const Recipe& recipe, float d_init_m);
 /// says how it is looked for.
 BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const Budget& budget);
 
-/// The same for any recipe: error-driven selection needs no d_init, but is told the budget, which it keeps in every
-/// view.
+/// The same for any recipe: error-driven selection needs no d_init, but is told the budget, which it keeps anew in
+/// every view, as far as lights that keep a map of their own allow.
 BudgetedPlan keep_budget(Predictor& predictor, const RenderSettings& settings, const Budget& budget);
 
 }  // namespace chandelier
