@@ -22,10 +22,11 @@ class ErrorLadder {
               std::span<const uint32_t> group_centers = {});
 
   uint32_t fewest_maps() const;
-  /// Lights without a map of their own may take shares of several (share_out()). The best with at most `maps` of them
-  /// (or fewest_maps(), where that is more), by the error of hard shadows.
+  /// The best found with at most `maps` (or fewest_maps(), where that is more), by the error of hard shadows with each
+  /// light in one map; then lights without a map of their own may take shares of several (share_out()).
   std::vector<MapMember> with_at_most(uint32_t maps) const;
-  /// The fewest maps whose estimated_rmse() is at most `most_rmse`. `judge` is of the same view and lights, but has
+  /// The fewest maps whose estimated_rmse() is at most `most_rmse`, looked for as if that never rose with their number;
+  /// all maps where none are found. `judge` is of the same view and lights, but has
   /// other points than the ladder was made for, on which it does better than anywhere else.
   std::vector<MapMember> within(double most_rmse, const LightSamples& judge, const ShadowReading& reading) const;
 
@@ -39,7 +40,8 @@ class ErrorLadder {
   const LightSamples& samples_;
   std::vector<std::vector<uint32_t>> lenders_;  // of each light those whose map it may take, nearest first
   uint32_t most_maps_ = 0;
-  std::vector<Rung> rungs_;  // by the number of maps, one more each, from fewest_maps(); error never rises
+  std::vector<Rung> rungs_;  // by the number of maps, one more each, from fewest_maps(); error never rises, but may
+                             // where lights have shares: of the fewer maps these may gain more
   mutable std::vector<std::vector<MapMember>> members_;  // of each rung; empty until asked for
 };
 

@@ -366,6 +366,7 @@ double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& 
                      const SelectAids& aids) {
   if (!aids.surroundings) throw std::invalid_argument("expected_rmse: needs to know the lights' surroundings");
   std::vector<uint32_t> in_view = list.pack_light;
+  in_view.insert(in_view.end(), list.center.begin(), list.center.end());  // held ones may be out of view
   std::sort(in_view.begin(), in_view.end());
   in_view.erase(std::unique(in_view.begin(), in_view.end()), in_view.end());
   std::vector<MapMember> members;

@@ -276,7 +276,7 @@ TEST(ErrorDrivenTest, ALightInSeveralMapsIsAsBrightAsInOneAndCountsOnce) {
   EXPECT_GT(expected_rmse(moved, recipe, from_above(), 16.0f / 9.0f, aids), shared_rmse);
 }
 
-TEST(ErrorDrivenTest, ListsEveryLightInViewOnceUnderAsFewMapsAsItsErrorAllows) {
+TEST(ErrorDrivenTest, AMapForEachSideOfAWallReachesWhereItsLightsDo) {
   const Sampled s(divided_floor());
   Surroundings surroundings(s.pack.view());
   Recipe recipe;
@@ -292,6 +292,60 @@ TEST(ErrorDrivenTest, ListsEveryLightInViewOnceUnderAsFewMapsAsItsErrorAllows) {
     EXPECT_NEAR(map.range_m, 21.0f, 1e-4f);  // C_att: the other light stands 1 m away
   }
   EXPECT_THROW(select_lights(s.pack.view().lights, recipe, from_above(), 1.0f), std::invalid_argument);
+}
+
+// A lamp far beyond the floor's right edge lights nothing in view, but sees that side of the wall.
+TEST(ErrorDrivenTest, ExpectsTheErrorOfAHeldMapWhoseLightIsOutOfView) {
+  test::Scene scene = divided_floor();
+  scene.lights.push_back(test::point_light({50, 1.5f, 0}, 10, 1));
+  const Sampled s(scene);
+  Surroundings surroundings(s.pack.view());
+  const auto rmse_with_far_map = [&](uint32_t light) {
+    std::vector<uint32_t> centers(5, pack::none);
+    centers[light] = 4;
+    const SelectAids aids{.surroundings = &surroundings, .centers = centers};
+    const LightList list = select_lights(s.pack.view().lights, {}, from_above(), 16.0f / 9.0f, aids);
+    EXPECT_EQ(list.lights_in_view, 4u);
+    EXPECT_EQ(list.center.back(), 4u);
+    return expected_rmse(list, {}, from_above(), 16.0f / 9.0f, aids);
+  };
+  EXPECT_GT(rmse_with_far_map(0), 0.08);
+  EXPECT_LT(rmse_with_far_map(2), 0.03);
+}
+
+// As few as are expected to cost 0.85 of what clusters do; up to 0.6 of their maps, as few as cost 0.65.
+TEST(ErrorDrivenTest, TakesMoreMapsThanItsErrorAsksForUpToSixTenthsOfTheClusters) {
+  uint32_t surer = 0;
+  for (uint32_t seed = 0; seed < 3; ++seed) {
+    const Sampled s(pillars(seed));
+    const auto& lights = s.pack.view().lights;
+    Surroundings surroundings(s.pack.view());
+    const SelectAids aids{.surroundings = &surroundings};
+    const auto select = [&](const Recipe& recipe) {
+      return select_lights(lights, recipe, from_above(), 16.0f / 9.0f, aids);
+    };
+    for (const float d_init_m : {0.6f, 1.0f, 1.5f}) {
+      Recipe clusters;
+      clusters.select = Select::light_clusters;
+      clusters.filter = Filter::pcss;
+      clusters.d_init_m = d_init_m;
+      const LightList of_clusters = select(clusters);
+      const double target = expected_rmse(of_clusters, clusters, from_above(), 16.0f / 9.0f, aids);
+      ASSERT_GT(target, 0.001);
+      Recipe by_error;
+      by_error.select = Select::error_driven;
+      by_error.d_init_m = d_init_m;
+      const auto maps_within = [&](double share) {
+        Recipe within = by_error;
+        within.max_rmse = static_cast<float>(share * target);
+        return std::min(select(within).maps.size(), of_clusters.maps.size());
+      };
+      const size_t asked = maps_within(0.85), ample = std::min(maps_within(0.65), of_clusters.maps.size() * 3 / 5);
+      EXPECT_EQ(select(by_error).maps.size(), std::max(asked, ample)) << "seed " << seed << ", d_init " << d_init_m;
+      surer += ample > asked;
+    }
+  }
+  EXPECT_GT(surer, 1u);
 }
 
 // Where nothing casts a shadow every sharing is right: as many maps as light clusters would be too many.
