@@ -177,11 +177,15 @@ void Sharing::tidy(uint32_t light) {
   const std::vector<Share> several = shares;
   const double before = error_;
   const std::vector<float> luminance = luminance_;
-  unite(light, several.front().center);
-  if (error_ - before < least_gain * before) return;
-  shares = several;
-  luminance_ = luminance;
-  error_ = before;
+  std::pair<double, uint32_t> best{std::numeric_limits<double>::infinity(), 0};  // the light whole in one of its maps
+  for (const Share& share : several) {
+    unite(light, share.center);
+    best = std::min(best, {error_, share.center});
+    shares = several;
+    luminance_ = luminance;
+    error_ = before;
+  }
+  if (best.first - before < least_gain * before) unite(light, best.second);
 }
 
 }  // namespace
