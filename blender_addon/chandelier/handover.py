@@ -60,7 +60,7 @@ class Handover:
         except (tools.ToolError, RuntimeError, ValueError, OSError) as error:
             self.error = str(error).strip()
             return False
-        self.play_command = play_command(context.scene) if play_after else self.play_command
+        self.play_command = play_command(context.scene)  # for a player that is open too
         return True
 
     def poll(self):

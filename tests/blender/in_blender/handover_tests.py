@@ -4,6 +4,7 @@
 import os
 import pathlib
 import stat
+import time
 
 import bpy
 
@@ -164,6 +165,27 @@ class Play(HandoverCase):
         self.assertTrue(self.pack.exists())
         self.ended()
         self.assertIn("no display", self.handover.error)
+
+    def test_an_open_player_starts_again_with_the_settings_and_the_pack_of_now(self):
+        programs = self.folder / "programs"
+        programs.mkdir()
+        (programs / "chandelier-bake").symlink_to(BIN / "chandelier-bake")
+        told = self.folder / "told"
+        program = programs / "chandelier-play"
+        program.write_text(f'#!/bin/sh\necho "$@" >> "{told}"\nexec sleep 60\n')
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        self.use_tools(programs)
+        self.addCleanup(lambda: self.handover.player.cancel())
+        bpy.ops.chandelier.bake(play=True)
+        self.scene.chandelier.face_size = 64
+        self.scene.chandelier.pack_path = "//other.chandelier"
+        bpy.ops.chandelier.bake()
+        self.assertTrue(self.handover.player.is_running())
+        for _ in range(500):
+            if told.exists() and "other.chandelier" in told.read_text():
+                break
+            time.sleep(0.01)
+        self.assertRegex(told.read_text().splitlines()[-1], r"/other\.chandelier .*--face-size 64\b")
 
     def test_settings_reach_the_player(self):
         """It draws what the scene says, into a picture."""
