@@ -198,6 +198,10 @@ class CHANDELIER_OT_scatter(Sparse, bpy.types.Operator):
         return ("volume", *super().shown())
 
     def places(self, context, source, rng):
+        if self.count == 0 and self.spacing == 0:
+            self.report({"WARNING"}, f"{source.name}: has room for any number of lights that may be at one place: give a count "
+                        "or a least distance")
+            return np.empty((0, 3)), np.empty((0, 3))
         lower, upper = bounds_of(source)
         inside = inside_of(context, source) if self.volume == "MESH" and source.type == "MESH" else None
         points = placement.scattered(lower, upper, self.spacing, self.count, rng, inside)
@@ -241,6 +245,7 @@ def joined(found):
 def lines_of(curve):
     """World-space vertices of a curve's lines, without bevel and extrusion, and its chains."""
     data = curve.data.copy()
+    data.dimensions = "3D"  # a flat one is filled, and the fill's edges would join its lines
     data.bevel_depth = data.extrude = data.offset = 0
     data.bevel_object = data.taper_object = None
     bare = bpy.data.objects.new(curve.name, data)

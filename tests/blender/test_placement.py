@@ -83,7 +83,15 @@ def test_a_full_volume_holds_fewer():
     points = placement.scattered((0, 0, 0), (1, 1, 1), 0.9, 100, rng())
     assert 1 <= len(points) < 20
     assert placement.scattered((0, 0, 0), (1, 1, 1), 0.1, 10, rng(), lambda p: np.zeros(len(p), bool)).shape == (0, 3)
-    assert placement.scattered((0, 0, 0), (1, 1, 1), 0.1, 0, rng()).shape == (0, 3)
+
+
+def test_without_a_count_a_volume_is_filled():
+    points = placement.scattered((0, 0, 0), (4, 4, 4), 1, 0, rng())
+    assert least_distance(points) >= 1
+    room = sum(min(math.dist(point, other) for other in points) >= 1 for point in rng(2).random((2000, 3)) * 4)
+    assert room < 40  # one in fifty places
+    assert placement.scattered((0, 0, 0), (1, 1, 1), 0.1, 0, rng(), lambda p: np.zeros(len(p), bool)).shape == (0, 3)
+    assert len(placement.scattered((0, 0, 0), (1, 1, 1), 0, 0, rng())) == placement.MOST
 
 
 def test_jitter_stays_within_its_ball():

@@ -7,6 +7,8 @@ import math
 import numpy as np
 
 TRIES = 40  # points thrown for each that is wanted, before a volume counts as full
+FILLING = 1000  # points thrown at once where as many are wanted as there is room for
+MOST = 20000
 
 
 def polylines(edges, count):
@@ -96,15 +98,17 @@ def thinned(points, distance, count, rng):
 
 
 def scattered(lower, upper, distance, count, rng, inside=None):
-    """Up to `count` points in a box, `distance` apart; `inside`: (n, 3) -> which of them count. Fewer where no more fit."""
+    """Up to `count` points in a box (0: as many as there is room for, up to MOST), `distance` apart; `inside`: (n, 3) -> which of
+    them count. Fewer where no more fit."""
     lower, upper = np.asarray(lower, float), np.asarray(upper, float)
-    apart, points = Apart(distance), []
-    for _ in range(TRIES):
-        thrown = lower + rng.random((max(count, 1), 3)) * (upper - lower)
+    apart, points, tried = Apart(distance), [], 0
+    while tried < TRIES * (count or max(len(points), FILLING // TRIES)):
+        thrown = lower + rng.random((count or FILLING, 3)) * (upper - lower)
+        tried += len(thrown)
         if inside is not None:
             thrown = thrown[inside(thrown)]
         for point in thrown.tolist():
-            if len(points) == count:
+            if len(points) == (count or MOST):
                 return np.array(points).reshape(-1, 3)
             if apart.take(point):
                 points.append(point)

@@ -75,6 +75,13 @@ class Place(BlenderCase):
         self.assertEqual(len(self.lights()), 8)
         self.assertEqual([len(bpy.data.curves), len([o for o in bpy.data.objects if o.type == "CURVE"])], [1, 1])  # no copy stays
 
+    def test_along_a_filled_flat_curve(self):
+        curve = self.curve("POLY", ((0, 0, 0), (4, 0, 0), (4, 2, 0), (2, 1, 0), (0, 2, 0)), cyclic=True)
+        curve.data.dimensions, curve.data.fill_mode, curve.data.bevel_depth = "2D", "BOTH", 0
+        bpy.ops.chandelier.place_along_curve(by="SPACING", spacing=1)
+        self.assertEqual(len(self.lights()), 13)  # of 8 + 2 sqrt 5 metres
+        self.assertEqual((curve.data.dimensions, curve.data.fill_mode), ("2D", "BOTH"))
+
     def test_a_curve_that_is_moved_turned_and_scaled(self):
         curve = self.curve("POLY", ((0, 0, 0), (1, 0, 0)), location=(0, 5, 0))
         curve.scale, curve.rotation_euler = (4, 1, 1), (0, 0, math.pi / 2)
@@ -147,6 +154,13 @@ class Place(BlenderCase):
         bpy.ops.chandelier.scatter(count=30, spacing=0.2)
         self.assertEqual(len(self.lights()), 30)
         self.assertLess(abs(self.places()).max(), 2)
+
+    def test_scattered_without_a_count(self):
+        cube = self.mesh(size=2)
+        bpy.ops.chandelier.scatter(count=0, spacing=0.7)
+        self.assertTrue(10 < len(self.lights()) < 60, len(self.lights()))
+        self.select(cube)
+        self.assertEqual(bpy.ops.chandelier.scatter(count=0, spacing=0), {"CANCELLED"})
 
     def test_empties_are_as_large_as_they_are_shown(self):
         empty = self.add("Empty", location=(5, 0, 0))
