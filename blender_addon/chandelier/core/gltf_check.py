@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import photometry
+from . import light_table, photometry
 
 TYPES = {"point": photometry.POINT, "spot": photometry.SPOT, "directional": photometry.DIRECTIONAL}
 NEAR_M = 1e-3  # places go through decomposed matrices and decimal numbers
@@ -113,9 +113,27 @@ def differences(table, row, way, matrix, light):
     compare("range", " m", float(np.float32(light.get("range", 0))), float(table.range_m[row]), 0)
     for part, name in enumerate(("red", "green", "blue")):
         compare(name, "", light.get("color", (1, 1, 1))[part], float(table.colour[row, part]), 1e-6)
+    out += extras_differences(table, row, extras)
+    if table.type[row] == photometry.SPOT:
+        cone = (light.get("spot") or {}).get("outerConeAngle", np.pi / 4)
+        compare("outerConeAngle", " rad", cone, float(table.spot_outer_rad[row]), 1e-5)
     if table.type[row] != photometry.POINT:
         forward = -matrix[:3, 2] / np.linalg.norm(matrix[:3, 2])
         if forward @ way < 0.9999:
             written, meant = (", ".join(f"{part:g}" for part in vector.round(3) + 0.0) for vector in (forward, way))
             out.append(f"shines to ({written}) in the file, meant was ({meant})")
+    return out
+
+
+def extras_differences(table, row, extras):
+    """The artist's settings. Groups are only numbers in the table, so that a name is there or not."""
+    flags = int(table.flags[row])
+    meant = {"priority": int(table.priority[row]), "dynamic": bool(flags & light_table.DYNAMIC),
+             "cluster": not flags & light_table.OWN_MAP}
+    written = {"priority": extras.get("priority", 128), "dynamic": extras.get("dynamic", False),
+               "cluster": extras.get("cluster", True)}
+    out = [f"{name} is {json.dumps(written[name])} in the file, meant was {json.dumps(meant[name])}"
+           for name in meant if written[name] != meant[name]]
+    if bool(extras.get("group")) != (table.group[row] != light_table.NO_GROUP):
+        out.append("is in a group in the file, meant was none" if extras.get("group") else "has lost its group in the file")
     return out

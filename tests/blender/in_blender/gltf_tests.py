@@ -164,9 +164,12 @@ class Written(GltfCase):
 
 class Checked(GltfCase):
     """What the check finds when someone has been at the file."""
+    settings = {}  # of the light Here
 
     def check_after(self, change):
-        self.lamp("Here", location=(1, 2, 3))
+        here = self.lamp("Here", location=(1, 2, 3))
+        for name, value in self.settings.items():
+            setattr(here.data.chandelier, name, value)
         self.lamp("Spot", "SPOT")
         self.export()
         gltf = self.gltf()
@@ -199,6 +202,26 @@ class Checked(GltfCase):
                              ({"color": [1, 0.5, 0.3]}, "blue"), ({"extras": {}}, "power_w")):
             bpy.data.batch_remove([thing for thing in self.scene.objects if thing.type == "LIGHT"])
             self.assert_told(lambda gltf, nodes, lights: lights[0].update(change), says)
+
+    def test_lost_settings(self):
+        def lose(key):
+            return lambda gltf, nodes, lights: lights[0]["extras"]["chandelier"].pop(key)
+        for key, value, says in (("priority", 7, "priority is 128 in the file, meant was 7"), ("group", "bar", "has lost its group"),
+                                 ("dynamic", True, "dynamic is false"), ("cluster", False, "cluster is true")):
+            bpy.data.batch_remove([thing for thing in self.scene.objects if thing.type == "LIGHT"])
+            self.settings = {key: value}
+            self.assert_told(lose(key), "Here", says)
+
+    def test_settings_nobody_meant(self):
+        for extras, says in (({"priority": 7}, "priority is 7"), ({"group": "bar"}, "is in a group"), ({"dynamic": True}, "dynamic"),
+                             ({"cluster": False}, "cluster is false")):
+            bpy.data.batch_remove([thing for thing in self.scene.objects if thing.type == "LIGHT"])
+            self.assert_told(lambda gltf, nodes, lights: lights[0]["extras"]["chandelier"].update(extras), "Here", says)
+
+    def test_another_cone(self):
+        def widen(gltf, nodes, lights):
+            lights[1]["spot"]["outerConeAngle"] = 1
+        self.assert_told(widen, "Spot", "outerConeAngle is 1 rad in the file, meant was 0.3926991 rad")
 
     def test_a_turned_spot(self):
         def turn(gltf, nodes, lights):
