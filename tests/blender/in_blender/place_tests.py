@@ -76,10 +76,15 @@ class Place(BlenderCase):
         self.assertEqual([len(bpy.data.curves), len([o for o in bpy.data.objects if o.type == "CURVE"])], [1, 1])  # no copy stays
 
     def test_along_a_filled_flat_curve(self):
-        curve = self.curve("POLY", ((0, 0, 0), (4, 0, 0), (4, 2, 0), (2, 1, 0), (0, 2, 0)), cyclic=True)
-        curve.data.dimensions, curve.data.fill_mode, curve.data.bevel_depth = "2D", "BOTH", 0
-        bpy.ops.chandelier.place_along_curve(by="SPACING", spacing=1)
-        self.assertEqual(len(self.lights()), 13)  # of 8 + 2 sqrt 5 metres
+        bpy.ops.curve.primitive_bezier_circle_add(radius=2)
+        curve = bpy.context.object
+        curve.data.dimensions, curve.data.fill_mode = "2D", "BOTH"
+        self.select(curve)
+        bpy.ops.chandelier.place_along_curve(count=12)
+        places = self.places()
+        self.assertEqual(len(places), 12)
+        steps = np.linalg.norm(places - np.roll(places, 1, axis=0), axis=1)
+        self.assertTrue(np.allclose(steps, 4 * math.sin(math.pi / 12), atol=0.01), steps)
         self.assertEqual((curve.data.dimensions, curve.data.fill_mode), ("2D", "BOTH"))
 
     def test_a_curve_that_is_moved_turned_and_scaled(self):
