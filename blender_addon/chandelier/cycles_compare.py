@@ -126,6 +126,9 @@ class CHANDELIER_OT_compare(bpy.types.Operator):
         size = [max(16, round(side * self.scale / 100)) for side in (render.resolution_x, render.resolution_y)]
         folder = pathlib.Path(bpy.app.tempdir)
         shown = handover.play_command(scene)[1:] if self.preset == "lightcluster" else []
+        if not hasattr(scene, "cycles"):
+            self.report({"ERROR"}, "the add-on 'Cycles Render Engine' is switched off")
+            return {"CANCELLED"}
         try:
             pack = bake_now(context, folder)
             ours = chandelier_picture(scene, pack, folder / "compared.pfm", size, self.preset, *without(shown, "--preset", "--camera"))

@@ -2,6 +2,7 @@
 """Export through Blender's own glTF exporter, and a look at what it has written."""
 
 import os
+import pathlib
 
 import bpy
 from bpy.props import StringProperty
@@ -25,19 +26,28 @@ def export(context, path):
         raise RuntimeError("the add-on 'glTF 2.0 format' is switched off")
     known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
     written = os.path.splitext(path)[0] + ".writing.glb"  # whatever happens, the older file is whole
+    pathlib.Path(written).unlink(missing_ok=True)  # else it would pass for what was written now
+    try:
+        run_exporter(context, path, filepath=written, **{name: value for name, value in WANTED.items() if name in known})
+        if not os.path.exists(written):
+            raise RuntimeError(f"{path}: the exporter wrote nothing")
+        check = gltf_check.check(written, scene_lights.read(context.evaluated_depsgraph_get()))
+        os.replace(written, path)
+        return check
+    finally:
+        pathlib.Path(written).unlink(missing_ok=True)
+
+
+def run_exporter(context, path, **options):
     active = context.view_layer.objects.active
     mode = active.mode if active else "OBJECT"
     try:
-        bpy.ops.export_scene.gltf(filepath=written, **{name: value for name, value in WANTED.items() if name in known})
+        bpy.ops.export_scene.gltf(**options)
     except RuntimeError as error:
         raise RuntimeError(f"{path}: the glTF exporter failed: {reason(error)}") from None
-    if active and active.mode != mode:
-        bpy.ops.object.mode_set(mode=mode)  # the exporter leaves it
-    if not os.path.exists(written):
-        raise RuntimeError(f"{path}: the exporter wrote nothing")
-    check = gltf_check.check(written, scene_lights.read(context.evaluated_depsgraph_get()))
-    os.replace(written, path)
-    return check
+    finally:
+        if active and active.mode != mode:
+            bpy.ops.object.mode_set(mode=mode)  # the exporter leaves it
 
 
 def reason(error):

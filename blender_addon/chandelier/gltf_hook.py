@@ -27,7 +27,8 @@ class glTF2ExportUserExtension:
 def without_property_group(element):
     """With custom properties exported, our own come along as Blender stores them, which is not what a baker reads."""
     if isinstance(element.extras, dict):
-        element.extras.pop("chandelier", None)
+        for name in ("chandelier", "chandelier_overlay"):
+            element.extras.pop(name, None)
         element.extras = element.extras or None
 
 

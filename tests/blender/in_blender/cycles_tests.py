@@ -10,6 +10,7 @@ import os
 import pathlib
 import random
 
+import addon_utils
 import bpy
 import numpy as np
 
@@ -31,7 +32,6 @@ class Cornell(BlenderCase):
         if not (BIN / "chandelier-bake").exists():
             self.skipTest(f"no chandelier-bake in {BIN}")
         if not hasattr(bpy.types.Scene, "cycles"):
-            import addon_utils
             addon_utils.enable("cycles", default_set=True)
         bpy.context.preferences.addons[ADDON].preferences.tools_folder = str(BIN)
         self.compare = part("cycles_compare")
@@ -142,3 +142,9 @@ class Cornell(BlenderCase):
         image = bpy.data.images["Chandelier against Cycles"]
         self.assertEqual(tuple(image.size), (3 * 80 + 8, 80))
         self.assertEqual((self.scene.world, self.scene.render.engine), (world, engine))
+
+    def test_without_cycles_it_says_so(self):
+        addon_utils.disable("cycles")
+        self.addCleanup(addon_utils.enable, "cycles")
+        with self.assertRaisesRegex(RuntimeError, "'Cycles Render Engine' is switched off"):
+            bpy.ops.chandelier.compare()

@@ -128,6 +128,7 @@ class Written(GltfCase):
         light.data.chandelier.priority = 3
         light["artist"] = "me"
         self.scene.chandelier.d_init = 2
+        self.scene.chandelier_overlay.links = not self.scene.chandelier_overlay.links
         light.chandelier.hidden_by_solo = True
         known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
         (mode,) = {"convert_lighting_mode", "export_import_convert_lighting_mode"} & set(known)  # 3.4's name, and the later ones'
@@ -137,7 +138,7 @@ class Written(GltfCase):
         self.assertEqual(written["extras"]["chandelier"]["priority"], 3)
         (node,) = [node for node in self.gltf()["nodes"] if node["name"] == "Lamp"]
         self.assertEqual(node["extras"], {"artist": "me"})
-        self.assertNotIn("chandelier", self.gltf()["scenes"][0].get("extras", {}))
+        self.assertEqual(self.gltf()["scenes"][0].get("extras", {}), {})
 
     def test_the_current_frame_counts(self):
         light = self.lamp()
@@ -160,6 +161,19 @@ class Written(GltfCase):
         with self.assertRaises(RuntimeError):  # what Blender makes of a reported error
             bpy.ops.chandelier.export(filepath=str(self.path))
         self.assertEqual(self.path.read_bytes(), b"older")
+
+
+    def test_a_failed_export_leaves_no_file_and_the_mode(self):
+        self.lamp()
+        bpy.context.view_layer.objects.active = bpy.data.objects["Plane"]
+        bpy.ops.object.mode_set(mode="EDIT")
+        self.path.mkdir()  # what no file can replace
+        (self.folder / "scene.writing.glb").write_bytes(b"of an export that was interrupted")
+        for path in (self.path, self.folder / "no" / "such" / "scene.glb"):
+            with self.assertRaises(RuntimeError):
+                bpy.ops.chandelier.export(filepath=str(path))
+            self.assertEqual(bpy.context.object.mode, "EDIT")
+            self.assertEqual([thing.name for thing in self.folder.iterdir()], ["scene.glb"])
 
 
 class Checked(GltfCase):
