@@ -93,6 +93,13 @@ class Handover:
             self.bake.cancel()
             self.error, self.bake = self.bake.error, None
 
+    def end(self):
+        """Of the bake and the player."""
+        self.stop()
+        if self.player:
+            self.player.cancel()
+        self.player = None
+
 
 # Timers, handlers, panels and operators, which Blender makes anew for each call, all look at the one that runs.
 handover = Handover()
@@ -223,7 +230,8 @@ def register():
 
 
 def unregister():
-    handover.stop()
+    handover.end()
+    show_status()
     if bpy.app.timers.is_registered(tick):
         bpy.app.timers.unregister(tick)
     bpy.app.handlers.save_post.remove(bake_on_save)

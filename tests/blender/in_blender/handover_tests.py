@@ -6,6 +6,7 @@ import pathlib
 import stat
 import time
 
+import addon_utils
 import bpy
 
 from blender_case import ADDON, SOURCE, BlenderCase, part
@@ -110,6 +111,26 @@ class Bake(HandoverCase):
         bpy.ops.chandelier.cancel()
         self.assertFalse(self.handover.poll())
         self.assertEqual(self.handover.error, "chandelier-bake: cancelled")
+
+
+class SwitchedOff(HandoverCase):
+    def test_nothing_runs_on_and_the_status_bar_is_blenders_again(self):
+        from bl_ui.space_statusbar import STATUSBAR_HT_header
+        own = STATUSBAR_HT_header.draw
+        program = self.folder / "chandelier-bake"
+        program.write_text("#!/bin/sh\nexec sleep 60\n")
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        (self.folder / "chandelier-play").symlink_to(program)
+        self.use_tools(self.folder)
+        self.handover.play([])
+        self.assertTrue(self.handover.start(bpy.context))
+        self.module.show_status()
+        self.assertIsNot(STATUSBAR_HT_header.draw, own)
+        processes = [self.handover.bake.process, self.handover.player.process]
+        self.addCleanup(addon_utils.enable, ADDON, default_set=True)
+        addon_utils.disable(ADDON, default_set=True)
+        self.assertNotIn(None, [process.poll() for process in processes])
+        self.assertIs(STATUSBAR_HT_header.draw, own)
 
 
 class OnSave(HandoverCase):
