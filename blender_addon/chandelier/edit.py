@@ -11,6 +11,11 @@ def selected_lights(context):
     return [thing for thing in context.selected_objects if thing.type == "LIGHT"]
 
 
+def named(objects, name):
+    """Of objects of the same name, which different files may own, that with this full name; or nothing."""
+    return next((thing for thing in objects if thing.name_full == name), None)
+
+
 def is_editable(thing):
     """Not another file's. What is overridden here is ours."""
     return thing.library is None
@@ -97,11 +102,12 @@ class CHANDELIER_OT_strength(bpy.types.Operator):
     bl_label = "Strength"
     bl_options = {"REGISTER", "UNDO"}
 
-    light: StringProperty(name="Light", description="Empty: all selected lights", options={"HIDDEN", "SKIP_SAVE"})
+    light: StringProperty(name="Light", description="By its full name; empty: all selected lights", options={"HIDDEN", "SKIP_SAVE"})
     factor: FloatProperty(name="Factor", default=1.25, min=0, soft_max=10)
 
     def execute(self, context):
-        lights = [context.scene.objects[self.light]] if self.light else selected_lights(context)
+        light = named(context.scene.objects, self.light)
+        lights = [light] if light and light.type == "LIGHT" else [] if self.light else selected_lights(context)
         datas = data_of(lights)
         for data in datas:
             data.energy *= self.factor

@@ -14,22 +14,17 @@ class glTF2ExportUserExtension:
     """Found by this name in the add-on's module."""
 
     def gather_node_hook(self, node, blender_object, export_settings):
-        without_property_group(node)
         if blender_object is None or blender_object.type != "LIGHT" or EXTENSION not in (node.extensions or {}):
             return
         light = node.extensions[EXTENSION].extension["light"].extension
         write_light(light, blender_object.data, export_settings["gltf_lighting_mode"] == "SPEC")
 
     def gather_scene_hook(self, scene, blender_scene, export_settings):
-        without_property_group(scene)
-
-
-def without_property_group(element):
-    """With custom properties exported, our own come along as Blender stores them, which is not what a baker reads."""
-    if isinstance(element.extras, dict):
-        for name in ("chandelier", "chandelier_overlay"):
-            element.extras.pop(name, None)
-        element.extras = element.extras or None
+        """With custom properties exported, our own come along as Blender stores them, which nobody reads."""
+        if isinstance(scene.extras, dict):
+            for name in ("chandelier", "chandelier_overlay"):
+                scene.extras.pop(name, None)
+            scene.extras = scene.extras or None
 
 
 def write_light(light, data, is_spec):

@@ -18,7 +18,7 @@ class CHANDELIER_UL_lights(bpy.types.UIList):
         power.enabled = edit.is_editable(item.data)
         power.prop(item.data, "energy", text="")
         row.operator("chandelier.solo", text="", emboss=False,
-                     icon="SOLO_ON" if is_soloed(context, item) else "SOLO_OFF").light = item.name
+                     icon="SOLO_ON" if is_soloed(context, item) else "SOLO_OFF").light = item.name_full
 
     def filter_items(self, context, data, property_name):
         objects = getattr(data, property_name)
@@ -36,7 +36,7 @@ def take_active(settings, context):
     if not 0 <= settings.active_light < len(objects):
         return
     light = objects[settings.active_light]
-    if light.name not in context.view_layer.objects:
+    if light not in context.view_layer.objects.values():
         return
     for other in context.selected_objects:
         other.select_set(False)
@@ -48,10 +48,23 @@ def lights_of(view_layer):
     return [thing for thing in view_layer.objects if thing.type == "LIGHT"]
 
 
+def hidden_by_solo(context):
+    """The view layer's lights that solo has hidden. The scene keeps them: a linked light keeps nothing of its own."""
+    kept = {item.light for item in context.scene.chandelier.hidden_by_solo if item.view_layer == context.view_layer.name}
+    return [light for light in lights_of(context.view_layer) if light in kept]
+
+
+def forget_hidden(context):
+    """Those of the view layer, and of any that is no more."""
+    kept, layers = context.scene.chandelier.hidden_by_solo, context.scene.view_layers
+    for number in reversed(range(len(kept))):
+        if kept[number].view_layer == context.view_layer.name or kept[number].view_layer not in layers:
+            kept.remove(number)
+
+
 def is_soloed(context, light):
     """Whether others are hidden for it."""
-    lights = lights_of(context.view_layer)
-    return light in lights and not light.hide_get() and any(other.chandelier.hidden_by_solo for other in lights)
+    return light in lights_of(context.view_layer) and not light.hide_get() and bool(hidden_by_solo(context))
 
 
 class CHANDELIER_OT_solo(bpy.types.Operator):
@@ -60,24 +73,25 @@ class CHANDELIER_OT_solo(bpy.types.Operator):
     bl_label = "Solo"
     bl_options = {"REGISTER", "UNDO"}
 
-    light: StringProperty(name="Light", description="Empty: all selected lights", options={"HIDDEN", "SKIP_SAVE"})
+    light: StringProperty(name="Light", description="By its full name; empty: all selected lights", options={"HIDDEN", "SKIP_SAVE"})
 
     def execute(self, context):
         lights = lights_of(context.view_layer)
-        chosen = [light for light in lights if light.name == self.light] if self.light else edit.selected_lights(context)
+        chosen = [light for light in lights if light.name_full == self.light] if self.light else edit.selected_lights(context)
         alone = [light for light in lights if not light.hide_get()]
-        hidden = [light for light in lights if light.chandelier.hidden_by_solo]
+        hidden = hidden_by_solo(context)
         for light in hidden:
             light.hide_set(False)
-            light.chandelier.hidden_by_solo = False
-        if not chosen or (hidden and alone == chosen):
+        forget_hidden(context)
+        if not chosen or (hidden and set(alone) == set(chosen)):
             return {"FINISHED"}
         for light in lights:
             if light in chosen:
                 light.hide_set(False)
             elif not light.hide_get():
                 light.hide_set(True)
-                light.chandelier.hidden_by_solo = True
+                item = context.scene.chandelier.hidden_by_solo.add()
+                item.light, item.view_layer = light, context.view_layer.name
         return {"FINISHED"}
 
 

@@ -39,9 +39,10 @@ class LightSettings(bpy.types.PropertyGroup):
         default="", override=OVERRIDABLE, update=tag)
 
 
-class ObjectSettings(bpy.types.PropertyGroup):
-    hidden_by_solo: BoolProperty(
-        name="Hidden by Solo", description="Solo hid this light, and shows it again when it ends", default=False)
+class HiddenBySolo(bpy.types.PropertyGroup):
+    """A light that solo hid in a view layer, and shows again when it ends."""
+    light: PointerProperty(type=bpy.types.Object)
+    view_layer: StringProperty()
 
 
 class SceneSettings(bpy.types.PropertyGroup):
@@ -81,10 +82,11 @@ class SceneSettings(bpy.types.PropertyGroup):
         name="Pack", description="The pack to bake; empty: beside the .blend, with its name", default="", subtype="FILE_PATH")
     bake_on_save: BoolProperty(
         name="Bake on Save", description="Export and bake whenever the .blend is saved", default=False)
+    hidden_by_solo: CollectionProperty(type=HiddenBySolo)
 
 
 class Surprise(bpy.types.PropertyGroup):
-    """`name` is the light's."""
+    """`name` is the light's full one."""
     rule: StringProperty()
     text: StringProperty()
 
@@ -95,12 +97,13 @@ class SessionSettings(bpy.types.PropertyGroup):
     has_looked: BoolProperty(description="Surprises were looked for")
 
 
-OWNERS = ((bpy.types.Light, LightSettings), (bpy.types.Object, ObjectSettings), (bpy.types.Scene, SceneSettings),
-          (bpy.types.WindowManager, SessionSettings))
+PARTS = (HiddenBySolo, Surprise)
+OWNERS = ((bpy.types.Light, LightSettings), (bpy.types.Scene, SceneSettings), (bpy.types.WindowManager, SessionSettings))
 
 
 def register():
-    bpy.utils.register_class(Surprise)
+    for part in PARTS:
+        bpy.utils.register_class(part)
     for owner, settings in OWNERS:
         bpy.utils.register_class(settings)
         overridable = OVERRIDABLE if owner is bpy.types.Light else set()
@@ -111,4 +114,5 @@ def unregister():
     for owner, settings in reversed(OWNERS):
         del owner.chandelier
         bpy.utils.unregister_class(settings)
-    bpy.utils.unregister_class(Surprise)
+    for part in PARTS:
+        bpy.utils.unregister_class(part)

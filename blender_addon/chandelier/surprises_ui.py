@@ -6,7 +6,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 from mathutils import Matrix, Vector
 
-from . import edit, scene_lights
+from . import edit, light_list, scene_lights
 from .core import photometry, surprises
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
@@ -33,24 +33,24 @@ def records_of(context):
     users = {}
     for light in lights:
         users[light.data] = users.get(light.data, 0) + 1
-    here, meshes = set(context.scene.objects), Meshes(depsgraph)
-    return [record_of(meshes, light, matrix, users[light.data], light in here) for light, matrix in lights.items()]
+    expected, meshes = set(context.scene.objects) - set(light_list.hidden_by_solo(context)), Meshes(depsgraph)
+    return [record_of(meshes, light, matrix, users[light.data], light in expected and not light.visible_get())
+            for light, matrix in lights.items()]
 
 
-def record_of(meshes, light, matrix, users, here):
-    """`here`: the light is one of the scene's own objects."""
+def record_of(meshes, light, matrix, users, hidden):
     data = light.data
     axes = np.array(matrix.to_3x3()).T
     scale = tuple(float(length) for length in np.linalg.norm(axes, axis=1))
     unit = axes / np.maximum(np.array(scale), 1e-12)[:, None]
     leaves = scene_lights.emission_node(data) if data.use_nodes else None
     return surprises.Light(
-        name=light.name, kind=data.type, power_w=scene_lights.emission_of(data)[0], white=tuple(data.color) == (1, 1, 1),
+        name=light.name_full, kind=data.type, power_w=scene_lights.emission_of(data)[0], white=tuple(data.color) == (1, 1, 1),
         has_range=data.use_custom_distance, users=users, scale=scale,
         sheared=bool(abs(unit @ unit.T - np.eye(3)).max() > 1e-3), casts_shadow=data.use_shadow,
         own_nodes=data.use_nodes and (leaves is None or any(socket.is_linked for socket in leaves.inputs)),
         inside="" if data.type == "SUN" else meshes.around(matrix.translation),
-        hidden=here and not light.visible_get() and not light.chandelier.hidden_by_solo)
+        hidden=hidden)
 
 
 class Meshes:
@@ -120,8 +120,8 @@ class OfRule:
     def lights(self, context):
         if not self.rule:
             return edit.selected_lights(context)
-        named = [item.name for item in context.window_manager.chandelier.surprises if item.rule == self.rule]
-        return [context.scene.objects[name] for name in named if name in context.scene.objects]
+        named = {item.name for item in context.window_manager.chandelier.surprises if item.rule == self.rule}
+        return [thing for thing in context.scene.objects if thing.name_full in named and thing.type == "LIGHT"]
 
     def execute(self, context):
         lights = [light for light in self.lights(context) if edit.is_editable(light) and edit.is_editable(light.data)]
@@ -137,7 +137,8 @@ class CHANDELIER_OT_select_surprised(OfRule, bpy.types.Operator):
     bl_label = "Select"
 
     def execute(self, context):
-        lights = [light for light in self.lights(context) if light.name in context.view_layer.objects]
+        here = set(context.view_layer.objects)
+        lights = [light for light in self.lights(context) if light in here]
         for other in context.selected_objects:
             other.select_set(False)
         for light in lights:
@@ -159,7 +160,7 @@ class CHANDELIER_OT_convert_area(OfRule, bpy.types.Operator):
         for data in edit.data_of([light for light in lights if light.data.type == "AREA"]):
             width, height = data.size, data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
             data.type = self.kind
-            data = bpy.data.lights[data.name]  # now of another Python type
+            data = bpy.data.lights[data.name, None]  # this file's, now of another Python type
             data.shadow_soft_size = (width + height) / 4
             if self.kind == "SPOT":
                 data.spot_size, data.spot_blend = np.pi * 160 / 180, 1

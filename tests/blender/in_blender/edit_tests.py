@@ -80,6 +80,10 @@ class Edit(LightsCase):
         self.assertEqual(self.energies(), [5, 40, 15])
 
 
+    def test_strength_of_a_light_that_is_no_more(self):
+        self.assertEqual(bpy.ops.chandelier.strength(light="Gone", factor=2), {"CANCELLED"})
+
+
 class List(LightsCase):
     def hidden(self):
         return [light.hide_get() for light in (self.one, self.two, self.three)]
@@ -114,6 +118,82 @@ class List(LightsCase):
         bpy.ops.wm.open_mainfile(filepath=path)
         bpy.ops.chandelier.solo(light="One")
         self.assertFalse(any(bpy.data.objects[name].hide_get() for name in ("One", "Two", "Three")))
+
+    def test_solo_is_of_a_view_layer(self):
+        other = self.scene.view_layers.new("Other")
+        bpy.ops.chandelier.solo(light="One")
+        self.assertEqual([light.hide_get(view_layer=other) for light in (self.one, self.two, self.three)], [False] * 3)
+        with bpy.context.temp_override(view_layer=other):
+            self.assertFalse(part("light_list").is_soloed(bpy.context, self.one))
+            bpy.ops.chandelier.solo(light="Two")
+        bpy.ops.chandelier.solo(light="One")
+        self.assertEqual(self.hidden(), [False, False, False])
+        self.assertEqual([light.hide_get(view_layer=other) for light in (self.one, self.two, self.three)], [True, False, True])
+
+    def test_a_light_that_is_renamed_meanwhile_comes_back(self):
+        bpy.ops.chandelier.solo(light="One")
+        self.two.name = "Second"
+        bpy.ops.chandelier.solo(light="One")
+        self.assertEqual(self.hidden(), [False, False, False])
+
+
+class Linked(LightsCase):
+    """Lights of another file with the same names as this one's."""
+
+    def setUp(self):
+        super().setUp()
+        path = str(self.folder / "library.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.read_homefile(use_empty=True)
+        self.scene = bpy.context.scene
+        self.own = self.add_light("One", energy=1000)
+        with bpy.data.libraries.load(path, link=True) as (_, target):
+            target.objects = ["One", "Two"]
+        self.linked = target.objects
+        for light in self.linked:
+            self.scene.collection.objects.link(light)
+        bpy.context.view_layer.update()
+
+    def test_solo_ends_after_saving(self):
+        bpy.ops.chandelier.solo(light="One")
+        self.assertEqual([light.hide_get() for light in (self.own, *self.linked)], [False, True, True])
+        self.assertEqual(part("scene_lights").read(bpy.context.evaluated_depsgraph_get()).names, ["One"])
+        path = str(self.folder / "solo.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.open_mainfile(filepath=path)
+        bpy.ops.chandelier.find_surprises()
+        self.assertNotIn("hidden", {item.rule for item in bpy.context.window_manager.chandelier.surprises})
+        bpy.ops.chandelier.solo(light="One")
+        self.assertFalse(any(light.hide_get() for light in bpy.context.view_layer.objects))
+        self.assertEqual(len(bpy.context.scene.chandelier.hidden_by_solo), 0)
+
+    def test_buttons_mean_the_light_that_they_stand_beside(self):
+        linked = self.linked[0]
+        self.assertEqual((linked.name, self.own.name), ("One", "One"))
+        bpy.ops.chandelier.solo(light=linked.name_full)
+        self.assertEqual([light.hide_get() for light in (self.own, *self.linked)], [True, False, True])
+        bpy.ops.chandelier.solo(light=linked.name_full)
+        bpy.ops.chandelier.strength(light=self.own.name_full, factor=2)
+        self.assertEqual((self.own.data.energy, linked.data.energy), (2000, 10))
+        self.assertEqual(bpy.ops.chandelier.strength(light=linked.name_full), {"CANCELLED"})
+        self.assertEqual(self.own.data.energy, 2000)
+
+    def test_surprises_name_the_file(self):
+        self.own.data.energy = 33  # the linked one has 10 W, as Blender makes lights
+        bpy.ops.chandelier.find_surprises()
+        named = {item.name for item in bpy.context.window_manager.chandelier.surprises if item.rule == "default_power"}
+        self.assertEqual(named, {"One [library.blend]"})
+        bpy.ops.chandelier.select_surprised(rule="default_power")
+        self.assertEqual(bpy.context.selected_objects, [self.linked[0]])
+
+    def test_a_converted_light_is_this_files(self):
+        self.own.data.type = "AREA"
+        bpy.ops.chandelier.find_surprises()
+        radius = self.linked[0].data.shadow_soft_size
+        bpy.ops.chandelier.convert_area(rule="area", kind="POINT")
+        self.assertEqual(self.own.data.type, "POINT")
+        self.assertAlmostEqual(self.own.data.shadow_soft_size, 0.125)
+        self.assertEqual(self.linked[0].data.shadow_soft_size, radius)
 
 
 class Surprises(BlenderCase):

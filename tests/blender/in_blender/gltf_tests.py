@@ -129,7 +129,6 @@ class Written(GltfCase):
         light["artist"] = "me"
         self.scene.chandelier.d_init = 2
         self.scene.chandelier_overlay.links = not self.scene.chandelier_overlay.links
-        light.chandelier.hidden_by_solo = True
         known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
         (mode,) = {"convert_lighting_mode", "export_import_convert_lighting_mode"} & set(known)  # 3.4's name, and the later ones'
         bpy.ops.export_scene.gltf(filepath=str(self.path), export_lights=True, export_extras=True, **{mode: "RAW"})
