@@ -42,7 +42,9 @@ class CHANDELIER_OT_edit_lights(bpy.types.Operator):
     use_range: BoolProperty(name="Range", options={"SKIP_SAVE"})
     range: FloatProperty(name="Range", description="0: no Custom Distance", default=8, min=0, soft_max=100, unit="LENGTH")
     use_radius: BoolProperty(name="Radius", options={"SKIP_SAVE"})
-    radius: FloatProperty(name="Radius", default=0.05, min=0, soft_max=1, unit="LENGTH")
+    radius: FloatProperty(
+        name="Radius", description="For Blender's own renders: neither exported nor used by the player", default=0.05, min=0, soft_max=1,
+        unit="LENGTH")
     use_priority: BoolProperty(name="Priority", options={"SKIP_SAVE"})
     priority: IntProperty(name="Priority", default=128, min=0, max=255)
     use_dynamic: BoolProperty(name="Dynamic", options={"SKIP_SAVE"})
@@ -102,7 +104,7 @@ class CHANDELIER_OT_strength(bpy.types.Operator):
     bl_label = "Strength"
     bl_options = {"REGISTER", "UNDO"}
 
-    light: StringProperty(name="Light", description="By its full name; empty: all selected lights", options={"HIDDEN", "SKIP_SAVE"})
+    light: StringProperty(name="Light", description="Its full name; empty: all selected lights", options={"HIDDEN", "SKIP_SAVE"})
     factor: FloatProperty(name="Factor", default=1.25, min=0, soft_max=10)
 
     def execute(self, context):

@@ -73,7 +73,7 @@ class CHANDELIER_OT_solo(bpy.types.Operator):
     bl_label = "Solo"
     bl_options = {"REGISTER", "UNDO"}
 
-    light: StringProperty(name="Light", description="By its full name; empty: all selected lights", options={"HIDDEN", "SKIP_SAVE"})
+    light: StringProperty(name="Light", description="Its full name; empty: all selected lights", options={"HIDDEN", "SKIP_SAVE"})
 
     def execute(self, context):
         lights = lights_of(context.view_layer)

@@ -123,7 +123,8 @@ class CHANDELIER_PT_surprises(Sidebar, bpy.types.Panel):
         box = self.layout.box()
         row = box.row(align=True)
         row.label(text=f"{rule.title}: {len(found)}", icon="ERROR")
-        row.operator("chandelier.select_surprised", text="", icon="RESTRICT_SELECT_OFF").rule = rule.id
+        if rule in surprises.LIGHT_RULES:
+            row.operator("chandelier.select_surprised", text="", icon="RESTRICT_SELECT_OFF").rule = rule.id
         for item in found[:NAMES_SHOWN]:
             wrapped(box, context, f"{item.name} {item.text}")
         if len(found) > NAMES_SHOWN:

@@ -94,7 +94,8 @@ def find(context):
     """Looks again and keeps what it finds for the panel."""
     session = context.window_manager.chandelier
     session.surprises.clear()
-    for surprise in surprises.surprises(records_of(context)):
+    scene = surprises.Scene(context.scene.name_full, context.scene.unit_settings.scale_length)
+    for surprise in surprises.surprises(records_of(context), [scene]):
         item = session.surprises.add()
         item.rule, item.name, item.text = surprise.rule.id, surprise.name, surprise.text
     session.has_looked = True

@@ -2,7 +2,7 @@
 import pytest
 
 from core import surprises
-from core.surprises import Light
+from core.surprises import Light, Scene
 
 
 def found(*lights):
@@ -32,6 +32,11 @@ def test_texts_say_how_much():
     assert "3 more" in texts["shared"]
     assert "2 × 2 × 0.5" in texts["scaled"]
     assert "Shade" in texts["inside"]
+
+
+def test_a_scene_in_other_units():
+    (surprise,) = surprises.surprises([Light("good")], [Scene("Metres"), Scene("Centimetres", 0.01)])
+    assert (surprise.rule.id, surprise.name) == ("unit_scale", "Centimetres") and "unit scale of 0.01" in surprise.text
 
 
 def test_order_is_that_of_the_rules():

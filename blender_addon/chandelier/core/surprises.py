@@ -28,11 +28,17 @@ class Light:
 
 
 @dataclass(frozen=True)
+class Scene:
+    name: str
+    metres_per_unit: float = 1  # what Blender's unit scale says a length of 1 is
+
+
+@dataclass(frozen=True)
 class Rule:
     id: str
     title: str
     applies: Callable
-    text: Callable  # what follows a light's name
+    text: Callable  # what follows a light's or scene's name
     fix: str = ""  # the operator that mends it
 
 
@@ -59,7 +65,12 @@ def _range_text(light):
     return f"has no range: the baker will end it {metres:.0f} m away, and its shadow map holds all that is nearer"
 
 
-RULES = (
+SCENE_RULES = (
+    Rule("unit_scale", "Unit scale", lambda scene: abs(scene.metres_per_unit - 1) > 1e-6,
+         lambda scene: f"has a unit scale of {scene.metres_per_unit:g}, which is not exported: what is {scene.metres_per_unit:g} m "
+         "here will be 1 m, while distances and watts stay the numbers that they are"),
+)
+LIGHT_RULES = (
     Rule("area", "Area lights", lambda light: light.kind == "AREA",
          lambda light: "is an area light, which glTF has not: it will be missing", "chandelier.convert_area"),
     Rule("dark", "Without power", lambda light: light.power_w <= 0,
@@ -82,9 +93,11 @@ RULES = (
     Rule("nodes", "Nodes", lambda light: light.own_nodes,
          lambda light: "has nodes: only its power and colour, and those of an emission node, are exported"),
 )
+RULES = SCENE_RULES + LIGHT_RULES
 RULE_OF_ID = {rule.id: rule for rule in RULES}
 
 
-def surprises(lights):
-    """In the order of the rules, then of the lights."""
-    return [Surprise(rule, light.name, rule.text(light)) for rule in RULES for light in lights if rule.applies(light)]
+def surprises(lights, scenes=()):
+    """In the order of the rules, then of the scenes and lights."""
+    return [Surprise(rule, thing.name, rule.text(thing)) for rules, things in ((SCENE_RULES, scenes), (LIGHT_RULES, lights))
+            for rule in rules for thing in things if rule.applies(thing)]

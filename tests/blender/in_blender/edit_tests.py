@@ -231,6 +231,11 @@ class Surprises(BlenderCase):
             ("area", "Area"), ("no_range", "No range"), ("default_power", "Default"), ("no_shadow", "No shadow"), ("hidden", "Hidden"),
             ("scaled", "Scaled"), ("shared", "Shared"), ("shared", "Shares"), ("nodes", "Nodes")]))
 
+    def test_a_scene_in_centimetres(self):
+        self.good()
+        self.scene.unit_settings.scale_length = 0.01
+        self.assertEqual(self.found(), [("unit_scale", self.scene.name)])
+
     def test_scaled_and_sheared_parents(self):
         parent = self.add("Parent")
         parent.scale = (3, 1, 1)
