@@ -3,8 +3,8 @@
 """Packs the add-on into one zip that Blender 3.4 installs as an add-on and 4.2 and later as an extension.
 
 The zip holds the folder itself: 3.4 needs it, and the later ones take it. Libraries and programs that are named go into its
-bin/ folder, where the add-on looks first; if none is named, the preview's library, where it has been built. Same files, same
-bytes.
+bin/ folder, where the add-on looks first; if none is named, the preview's library, where it has been built. With them go their
+licences, and where they are Linux's the manifest says so. Same files, same bytes.
 """
 
 import argparse
@@ -15,6 +15,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 ADDON = HERE / "chandelier"
 BUILD = HERE.parent / "build"
 SUFFIXES = {".py", ".toml"}
+LICENCES = (HERE.parent / "LICENSE", HERE.parent / "NOTICE", HERE / "LICENSE-GLM")  # of what is bundled
+LINUX_X64 = b"\x7fELF\x02\x01"  # how its programs and libraries begin
 OLDEST = (1980, 1, 1, 0, 0, 0)  # what a zip can date; the same in each
 
 
@@ -23,8 +25,16 @@ def files_of(addon, bundled):
     files = {f"{addon.name}/{path.relative_to(addon).as_posix()}": path
              for path in addon.rglob("*") if path.suffix in SUFFIXES}
     files[f"{addon.name}/LICENSE"] = HERE / "LICENSE"
-    files.update({f"{addon.name}/bin/{path.name}": path for path in bundled})
+    files.update({f"{addon.name}/bin/{path.name}": path for path in (*bundled, *(LICENCES if bundled else ()))})
     return files
+
+
+def bytes_of(path, bundled):
+    """As the zip has them: with programs of one platform it is an extension for that one."""
+    data = path.read_bytes()
+    if path.name == "blender_manifest.toml" and any(thing.read_bytes().startswith(LINUX_X64) for thing in bundled):
+        return data.replace(b"\nlicense =", b"\nplatforms = [\"linux-x64\"]\nlicense =")
+    return data
 
 
 def write(target, bundled=()):
@@ -33,9 +43,9 @@ def write(target, bundled=()):
         for name, path in sorted(files_of(ADDON, bundled).items()):
             entry = zipfile.ZipInfo(name, OLDEST)
             entry.compress_type = zipfile.ZIP_DEFLATED
-            executable = "/bin/" in name
+            executable = path in bundled
             entry.external_attr = (0o755 if executable else 0o644) << 16
-            archive.writestr(entry, path.read_bytes())
+            archive.writestr(entry, bytes_of(path, bundled))
 
 
 def main():

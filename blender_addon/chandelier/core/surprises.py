@@ -67,8 +67,8 @@ def _range_text(light):
 
 SCENE_RULES = (
     Rule("unit_scale", "Unit scale", lambda scene: abs(scene.metres_per_unit - 1) > 1e-6,
-         lambda scene: f"has a unit scale of {scene.metres_per_unit:g}, which is not exported: what is {scene.metres_per_unit:g} m "
-         "here will be 1 m, while distances and watts stay the numbers that they are"),
+         lambda scene: f"has a unit scale of {scene.metres_per_unit:g}, which is not exported: what is "
+         f"{scene.metres_per_unit:g} m here will be 1 m, while distances and watts stay the numbers that they are"),
 )
 LIGHT_RULES = (
     Rule("area", "Area lights", lambda light: light.kind == "AREA",

@@ -5,6 +5,7 @@ import importlib.util
 import pathlib
 import shutil
 import sys
+import tomllib
 import zipfile
 
 import addon_utils
@@ -51,15 +52,26 @@ class Installed(BlenderCase):
     def test_the_zip_is_whole_and_always_the_same(self):
         first, second = self.folder / "a.zip", self.folder / "b.zip"
         tool = self.folder / "libtool.so"
-        tool.write_bytes(b"tool")
+        tool.write_bytes(b"\x7fELF\x02\x01 tool")
         make_zip(first, tool)
         make_zip(second, tool)
         self.assertEqual(first.read_bytes(), second.read_bytes())
         with zipfile.ZipFile(first) as archive:
             names = archive.namelist()
-        for name in ("__init__.py", "blender_manifest.toml", "LICENSE", "core/__init__.py", "bin/libtool.so"):
+            manifest = tomllib.loads(archive.read("chandelier/blender_manifest.toml").decode())
+            modes = {name: archive.getinfo(f"chandelier/bin/{name}").external_attr >> 16 for name in ("libtool.so", "NOTICE")}
+        self.assertEqual(manifest["platforms"], ["linux-x64"])
+        self.assertEqual(modes, {"libtool.so": 0o755, "NOTICE": 0o644})
+        for name in ("__init__.py", "blender_manifest.toml", "LICENSE", "core/__init__.py", "bin/libtool.so", "bin/LICENSE",
+                     "bin/LICENSE-GLM"):
             self.assertIn(f"chandelier/{name}", names)
         self.assertFalse([name for name in names if not name.startswith("chandelier/") or "__pycache__" in name])
+
+    def test_without_programs_it_is_for_every_platform(self):
+        make_zip(self.folder / "plain.zip")
+        with zipfile.ZipFile(self.folder / "plain.zip") as archive:
+            self.assertNotIn("platforms", tomllib.loads(archive.read("chandelier/blender_manifest.toml").decode()))
+            self.assertFalse([name for name in archive.namelist() if "/bin/" in name])
 
     def test_installs_and_can_be_switched_off_and_on(self):
         addon_utils.disable(ADDON, default_set=True)
