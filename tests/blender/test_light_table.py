@@ -48,6 +48,7 @@ def test_directions_are_unit_length_whatever_the_scale():
 def test_names_are_told_apart():
     assert light_table.unique(["a", "b", "a", "a"]) == ["a", "b", "a 2", "a 3"]
     assert light_table.unique(["a", "b"]) == ["a", "b"]
+    assert light_table.unique(["a", "a", "a 2", "a 2"]) == ["a", "a 3", "a 2", "a 2 2"]
 
 
 def test_a_moved_table_keeps_the_rest():

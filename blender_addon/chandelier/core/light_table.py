@@ -71,10 +71,15 @@ def unique(names):
     """The same names, with a number after those that were there before."""
     if len(set(names)) == len(names):
         return names
-    seen, out = {}, []
+    taken, numbers, first, out = set(names), {}, set(), []
     for name in names:
-        seen[name] = number = seen.get(name, 0) + 1
-        out.append(name if number == 1 else f"{name} {number}")
+        chosen = name
+        while chosen in (first if chosen == name else taken):
+            numbers[name] = numbers.get(name, 1) + 1
+            chosen = f"{name} {numbers[name]}"
+        first.add(name)
+        taken.add(chosen)
+        out.append(chosen)
     return out
 
 
