@@ -13,11 +13,12 @@ bl_info = {
 
 # Blender reads bl_info without running the file.
 from . import (  # noqa: E402
-    cycles_compare, edit, export, handover, light_list, overlay, panels, place, preview, properties, selection, surprises_ui)
+    cycles_compare, edit, export, handover, light_list, overlay, panels, place, preferences, preview, properties, selection,
+    surprises_ui)
 from .gltf_hook import glTF2ExportUserExtension  # noqa: E402, F401  (the exporter looks for it here)
 
-MODULES = (properties, place, edit, light_list, surprises_ui, export, handover, cycles_compare, selection, preview, overlay,
-           panels)
+MODULES = (preferences, properties, place, edit, light_list, surprises_ui, export, handover, cycles_compare, selection, preview,
+           overlay, panels)
 
 
 def register():

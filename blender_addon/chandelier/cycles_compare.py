@@ -10,7 +10,9 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from . import export, handover
+from .cameras import perspective_camera
 from .core import photometry, picture_error, tools
+from .preferences import tool_folders
 
 SHEET = "Chandelier against Cycles"
 DIRECT_ONLY = {"max_bounces": 0, "use_denoising": False, "use_adaptive_sampling": False, "film_exposure": 1.0,
@@ -58,7 +60,7 @@ def read_exr(path):
 
 
 def tool(name):
-    return tools.find(name, handover.tool_folders())
+    return tools.find(name, tool_folders())
 
 
 def chandelier_picture(scene, pack, path, size, preset, *options):
@@ -115,7 +117,7 @@ class CHANDELIER_OT_compare(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return context.scene.camera is not None and context.scene.camera.type == "CAMERA"
+        return perspective_camera(context.scene) is not None
 
     def invoke(self, context, event):
         return context.window_manager.invoke_props_dialog(self)

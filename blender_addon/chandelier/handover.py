@@ -3,31 +3,17 @@
 
 import os
 import pathlib
+from dataclasses import replace
 
 import bpy
-from bpy.props import BoolProperty, StringProperty
+from bpy.props import BoolProperty
 
-from . import export, surprises_ui
-from .core import tools
+from . import export, selection, surprises_ui
+from .cameras import perspective_camera
+from .core import clusters, tools
+from .preferences import tool_folders
 
 POLL_S = 0.1
-
-
-class Preferences(bpy.types.AddonPreferences):
-    bl_idname = __package__
-
-    tools_folder: StringProperty(
-        name="Programs", description="Folder of chandelier-bake and chandelier-play; empty: the add-on's own, else PATH",
-        subtype="DIR_PATH")
-
-    def draw(self, context):
-        self.layout.prop(self, "tools_folder")
-
-
-def tool_folders():
-    """What the preferences name, then the add-on's own."""
-    named = bpy.context.preferences.addons[__package__].preferences.tools_folder
-    return [*([pathlib.Path(bpy.path.abspath(named))] if named else []), pathlib.Path(__file__).resolve().parent / "bin"]
 
 
 class Handover:
@@ -115,10 +101,14 @@ def pack_path(scene):
 
 def play_command(scene):
     """Without the program, which is looked for when it starts."""
-    settings, camera = scene.chandelier, scene.camera
+    settings, camera = scene.chandelier, perspective_camera(scene)
     names = tools.Shown.__dataclass_fields__.keys() - {"camera"}
-    shown = tools.Shown(camera=camera.name if camera and camera.data.type == "PERSP" else "",
-                        **{name: getattr(settings, name) for name in names})
+    shown = tools.Shown(camera=camera.name if camera else "", **{name: getattr(settings, name) for name in names})
+    if settings.budget_maps or settings.budget_mib:
+        try:  # what the preview says: it begins at the distance that is set, where the player's own search begins at 0
+            shown = replace(shown, d_init=selection.d_init_of(bpy.context), budget_maps=0, budget_mib=0)
+        except clusters.PreviewError:
+            pass  # no preview to agree with: the player keeps the budget
     return tools.play_command("", pack_path(scene), shown)[1:]
 
 
@@ -220,7 +210,7 @@ def bake_on_save(*_):
             wait()
 
 
-CLASSES = (Preferences, CHANDELIER_OT_bake, CHANDELIER_OT_play, CHANDELIER_OT_cancel)
+CLASSES = (CHANDELIER_OT_bake, CHANDELIER_OT_play, CHANDELIER_OT_cancel)
 register_classes, unregister_classes = bpy.utils.register_classes_factory(CLASSES)
 
 

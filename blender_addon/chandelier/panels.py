@@ -31,9 +31,7 @@ def draw_shadow_settings(layout, settings):
     layout.use_property_decorate = False
     budgeted = settings.budget_maps > 0 or settings.budget_mib > 0
     column = layout.column()
-    row = column.row()
-    row.active = not budgeted  # the budget chooses it
-    row.prop(settings, "d_init")
+    column.prop(settings, "d_init", text="Distance at Least" if budgeted else "Distance")
     column.prop(settings, "distance_scaling")
     row = column.row()
     row.active = settings.distance_scaling != "none"

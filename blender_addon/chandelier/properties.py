@@ -49,7 +49,7 @@ class SceneSettings(bpy.types.PropertyGroup):
     """Names and limits are chandelier-play's."""
     d_init: FloatProperty(
         name="Distance", description="Lights closer than this to a cluster's centre share its shadow map, at the camera; "
-        "0: each light has its own", default=0.5, min=0, soft_max=10, unit="LENGTH", update=redraw)
+        "0: each light has its own. A budget may widen it", default=0.5, min=0, soft_max=10, unit="LENGTH", update=redraw)
     distance_scaling: EnumProperty(
         name="Farther Away", update=redraw, description="How the distance follows the distance to the camera", default="grow", items=(
             ("grow", "Grows", "Lights that are far from the camera share more: times 1 + |C| / z_far"),
@@ -66,12 +66,11 @@ class SceneSettings(bpy.types.PropertyGroup):
         ("pcf", "Smoothed (PCF)", "Edges are smoothed by the same width everywhere"),
         ("hard", "Hard", "One comparison; only for lights that share no shadow map: with distance 0")))
     budget_maps: IntProperty(
-        name="Maps", description="Most shadow maps of a frame; the distance is chosen to meet it. 0: no limit", default=0, min=0,
+        name="Maps", description="Most shadow maps of a frame; where there are more, the distance is widened. 0: no limit", default=0, min=0,
         update=redraw)
     budget_mib: IntProperty(
-        name="MiB", description="Most depth of all shadow maps of a frame, MiB; the distance is chosen to meet it. 0: no limit",
-        default=0, min=0,
-        update=redraw)
+        name="MiB", description="Most depth of all shadow maps of a frame, MiB; where it takes more, the distance is widened. 0: no limit",
+        default=0, min=0, update=redraw)
     view: EnumProperty(name="Seen From", update=redraw, description="Whose distance to the lights counts", default="camera", items=(
         ("camera", "Scene Camera", "The scene's camera, as chandelier-play starts"),
         ("viewport", "Viewport", "The 3D view that is drawn")))

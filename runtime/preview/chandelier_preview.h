@@ -105,7 +105,7 @@ typedef struct ChandelierPreviewBill {
   uint64_t wanted_shadow_bytes; /* with the d_init of the settings, whatever the budget */
   uint32_t wanted_shadow_maps;
   uint32_t lights_over_budget;
-  float d_init_m;          /* as used: larger than that of the settings where these are over budget */
+  float d_init_m;          /* as used: the settings' own where it keeps the budget, else the smallest that does */
   uint32_t reference_path; /* 1: clusters are nearly as many as lights: a hard map per light is drawn */
   uint32_t over_budget;    /* 1: the settings' d_init is */
   uint32_t misses_budget;  /* 1: no d_init keeps it; the largest tried is taken */
@@ -136,8 +136,9 @@ CHANDELIER_PREVIEW_API uint32_t chandelier_preview_abi(void);
 CHANDELIER_PREVIEW_API void chandelier_preview_defaults(ChandelierPreviewSettings* settings);
 
 /* Selects. Where the settings' d_init breaks a budget, the smallest that keeps it is searched for, as chandelier-play
- * does with --max-shadow-maps and --max-shadow-bytes. `error_text` gets one line without line feed, cut to
- * `error_bytes` and always terminated; it may be null. Any thread may call, any number at a time. */
+ * does with --max-shadow-maps and --max-shadow-bytes. Where they keep it their d_init stays, but the player given a
+ * budget searches all the same: give it the bill's d_init_m instead. `error_text` gets one line without line feed, cut
+ * to `error_bytes` and always terminated; it may be null. Any thread may call, any number at a time. */
 CHANDELIER_PREVIEW_API int32_t chandelier_preview_select(const ChandelierPreviewLights* lights,
                                                          const ChandelierPreviewSettings* settings,
                                                          const ChandelierPreviewCamera* camera,

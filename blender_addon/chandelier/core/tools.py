@@ -61,15 +61,15 @@ class Shown:
 
 
 def play_command(program, pack, shown):
-    """A budget chooses the distance, so that only one of them is said."""
+    """A budget has the player choose the distance, so that only one of them is said."""
     command = [program, str(pack), "--preset", "lightcluster", "--filter", shown.filter, "--distance-scaling",
-               shown.distance_scaling, "--z-far", f"{shown.z_far:g}", "--face-size", str(shown.face_size)]
+               shown.distance_scaling, "--z-far", f"{shown.z_far:.9g}", "--face-size", str(shown.face_size)]
     if shown.budget_maps:
         command += ["--max-shadow-maps", str(shown.budget_maps)]
     if shown.budget_mib:
         command += ["--max-shadow-bytes", str(shown.budget_mib)]
     if not shown.budget_maps and not shown.budget_mib:
-        command += ["--d-init", f"{shown.d_init:g}"]
+        command += ["--d-init", f"{shown.d_init:.9g}"]
     return command + (["--camera", shown.camera] if shown.camera else [])
 
 

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bake, Play and Bake on Save, without a display."""
 
+import json
 import os
 import pathlib
+import random
 import stat
+import subprocess
 import time
 
 import addon_utils
@@ -207,6 +210,58 @@ class Play(HandoverCase):
                 break
             time.sleep(0.01)
         self.assertRegex(told.read_text().splitlines()[-1], r"/other\.chandelier .*--face-size 64\b")
+
+    def test_it_takes_the_maps_that_the_preview_says(self):
+        settings, render = self.scene.chandelier, self.scene.render
+        settings.d_init, settings.distance_scaling, settings.z_far, settings.face_size = 0.7, "grow", 17.3, 128
+        render.resolution_x, render.resolution_y = 320, 180
+        bpy.ops.object.camera_add(location=(0, -9, 2), rotation=(1.5, 0, 0))
+        bpy.context.object.name = "Eye"
+        self.scene.camera = bpy.context.object
+        rng = random.Random(3)
+        for number in range(60):
+            self.add_light(f"Lamp {number}", location=[rng.uniform(-4, 4), rng.uniform(-9, 4), rng.uniform(1, 3)], energy=20,
+                           use_custom_distance=True, cutoff_distance=2)
+        bpy.ops.chandelier.bake()
+        wanted = self.preview().bill
+        self.assertLess(wanted.shadow_maps, wanted.lights_in_view - 5)
+        self.assertLess(wanted.lights_in_view, wanted.lights)
+        for maps, mib, over in ((0, 0, False), (wanted.shadow_maps + 3, 0, False), (7, 0, True), (0, 3, True)):
+            with self.subTest(maps=maps, mib=mib):
+                settings.budget_maps, settings.budget_mib = maps, mib
+                bill, (counters, d_init_m) = self.preview().bill, self.predicted()
+                self.assertEqual((bill.over_budget, bill.shadow_maps < wanted.shadow_maps), (over, over))
+                for name in ("lights_in_view", "shadow_maps", "shadow_views", "shadow_bytes"):
+                    self.assertEqual(counters[name], getattr(bill, name), name)
+                self.assertEqual(d_init_m, bill.d_init_m)
+
+    def preview(self):
+        bpy.context.view_layer.update()
+        part("preview").PREVIEW.update(bpy.context)
+        self.assertEqual(part("preview").PREVIEW.error, "")
+        return part("preview").PREVIEW.selection
+
+    def predicted(self):
+        """What chandelier-play counts when it is started as Play starts it."""
+        stats = self.folder / "stats.json"
+        subprocess.run([BIN / "chandelier-play", *self.module.play_command(self.scene), "--predict", "--size", "320x180",
+                        "--stats", stats], check=True, stdout=subprocess.DEVNULL)
+        said = json.loads(stats.read_text())
+        return said["counters"], said["recipe"]["settings"]["d_init_m"]
+
+    def test_without_a_preview_the_player_keeps_the_budget(self):
+        module = part("core.clusters")
+        self.scene.chandelier.budget_maps = 7
+        self.assertIn("--d-init", self.module.play_command(self.scene))
+        find = module.find
+        self.addCleanup(setattr, module, "find", find)
+
+        def fail(folders):
+            raise module.PreviewError("none")
+        module.find = fail
+        command = self.module.play_command(self.scene)
+        self.assertEqual(command[command.index("--max-shadow-maps") + 1], "7")
+        self.assertNotIn("--d-init", command)
 
     def test_settings_reach_the_player(self):
         """It draws what the scene says, into a picture."""

@@ -84,7 +84,7 @@ class Select(BlenderCase):
 class Camera(BlenderCase):
     def camera(self):
         table = part("scene_lights").read(bpy.context.evaluated_depsgraph_get())
-        return selection.camera_of(bpy.context, table)
+        return part("cameras").camera_of(bpy.context, table)
 
     def test_the_scenes_camera_as_the_exporter_writes_it(self):
         bpy.ops.object.camera_add(location=(1, 2, 3), rotation=(math.pi / 2, 0, math.pi / 2))
@@ -109,6 +109,30 @@ class Camera(BlenderCase):
         camera = self.camera()
         self.assertClose(camera.eye, (2, 1, 2))
         self.assertIsNone(camera.forward)
+
+    def test_pixels_that_are_not_square(self):
+        bpy.ops.object.camera_add()
+        self.scene.camera = bpy.context.object
+        render = self.scene.render
+        render.resolution_x, render.resolution_y, render.pixel_aspect_x = 400, 200, 1.5
+        self.assertEqual(self.camera().size_px, (600, 200))
+
+    def test_what_the_player_cannot_take_is_no_camera(self):
+        self.add_light(location=(1, 2, 3))
+        self.scene.camera = self.add("Empty", location=(5, 5, 5))
+        for kind in ("", "ORTHO", "PANO"):
+            if kind:
+                self.scene.camera = self.add(kind, bpy.data.cameras.new(kind))
+                self.scene.camera.data.type = kind
+            bpy.context.view_layer.update()
+            camera = self.camera()
+            self.assertIsNone(camera.forward)
+            self.assertClose(camera.eye, (1, 2, 3))
+            self.assertNotIn("--camera", part("handover").play_command(self.scene))
+            self.assertFalse(bpy.ops.chandelier.compare.poll())
+        self.scene.camera.data.type = "PERSP"
+        self.assertIn("--camera", part("handover").play_command(self.scene))
+        self.assertTrue(bpy.ops.chandelier.compare.poll())
 
     def test_the_viewport(self):
         self.scene.chandelier.view = "viewport"
