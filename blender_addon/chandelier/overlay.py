@@ -103,8 +103,7 @@ class Overlay:
 
     def draw_text(self):
         context = bpy.context
-        scene = context.scene
-        if not scene.chandelier_overlay.show or not context.space_data.overlay.show_overlays:
+        if not context.scene.chandelier_overlay.show or not context.space_data.overlay.show_overlays:
             return
         scale = context.preferences.system.ui_scale
         set_size(TEXT_PX * scale)
@@ -117,7 +116,7 @@ class Overlay:
         set_size(size)
         left, right = (overlapped(context, kind) for kind in ("TOOLS", "UI"))
         most = max(20, int((context.region.width - left - right - 40 * scale) / (CHARACTER_EM * size)))
-        lines = [(line, is_bad) for text, is_bad in bill_lines(scene) for line in textwrap.wrap(text, most)]
+        lines = [(line, is_bad) for text, is_bad in bill_lines(context) for line in textwrap.wrap(text, most)]
         for row, (line, is_bad) in enumerate(lines):
             draw_text(line, left + 20 * scale, context.region.height - (120 + 22 * row) * scale,
                       shapes.OVER_BUDGET if is_bad else WHITE)

@@ -141,7 +141,7 @@ class CHANDELIER_PT_clusters(Sidebar, bpy.types.Panel):
 
     def draw(self, context):
         layout, shown = self.layout, context.scene.chandelier_overlay
-        for text, is_bad in bill_lines(context.scene) if shown.show else ():
+        for text, is_bad in bill_lines(context) if shown.show else ():
             box = layout.column()
             box.alert = is_bad
             wrapped(box, context, text)

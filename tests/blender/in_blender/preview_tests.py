@@ -6,7 +6,7 @@ import time
 
 import bpy
 
-from blender_case import BlenderCase, part
+from blender_case import ADDON, BlenderCase, part
 
 preview = part("preview")
 
@@ -129,10 +129,109 @@ class Preview(BlenderCase):
         selection = self.update()
         self.assertEqual((selection.bill.shadow_maps, selection.bill.wanted_shadow_maps), (1, 2))
         self.assertEqual(selection.over_budget.sum(), 1)
-        (title, _), *bad = preview.bill_lines(self.scene)
+        (title, _), *bad = preview.bill_lines(bpy.context)
         self.assertEqual(title, "16 lights → 1 shadow map of 1, 6 MiB")
         lost = preview.PREVIEW.table.names[selection.over_budget.nonzero()[0][0]]
         self.assertTrue(any(lost in text for text, is_bad in bad if is_bad), bad)
+
+    def test_versions_never_come_again(self):
+        """What is drawn is built again only with another version."""
+        self.add_ring("Left", (-4, 0, 1))
+        seen = []
+        for step in range(4):
+            bpy.ops.ed.undo_push(message="step")
+            preview.PREVIEW.forget()
+            self.update()
+            seen.append(preview.PREVIEW.version)
+        self.assertEqual(seen, sorted(set(seen)))
+
+    def test_animation_is_followed(self):
+        lamps = self.add_ring("Left", (-4, 0, 1))
+        lamps[3].keyframe_insert("location", frame=1)
+        lamps[3].location.x += 5
+        lamps[3].keyframe_insert("location", frame=10)
+        dimmed = lamps[5].data
+        dimmed.keyframe_insert("energy", frame=1)
+        dimmed.energy = 0
+        dimmed.keyframe_insert("energy", frame=10)
+        nodes = lamps[6].data
+        nodes.use_nodes = True
+        strength = nodes.node_tree.nodes["Emission"].inputs["Strength"]
+        strength.default_value = 1
+        strength.keyframe_insert("default_value", frame=1)
+        strength.default_value = 0
+        strength.keyframe_insert("default_value", frame=20)
+        self.update()
+        reader, seen = preview.PREVIEW.reader, []
+        for frame in (1, 10, 20, 1, 10):
+            self.scene.frame_set(frame)
+            bill = preview.PREVIEW.update(bpy.context).bill
+            seen.append((bill.lights, bill.shadow_maps))
+        self.assertEqual(seen, [(8, 1), (7, 2), (6, 2), (8, 1), (7, 2)])
+        self.assertIs(preview.PREVIEW.reader, reader)  # what stands still was not read again
+
+    def in_scene(self, scene):
+        bpy.context.window.scene = scene
+        return self.update()
+
+    def test_each_scene_and_view_layer_has_its_own(self):
+        first = self.scene
+        lamps = self.add_ring("First", (-4, 0, 1))
+        self.scene = second = bpy.data.scenes.new("Second")
+        second.chandelier.distance_scaling = "none"
+        self.add_ring("Second", (4, 0, 1), lamps=3)
+        second.collection.objects.link(lamps[0])  # shared
+        for _ in range(2):
+            self.assertEqual(self.in_scene(first).bill.lights, 8)
+            self.assertEqual(self.in_scene(second).bill.lights, 4)
+        lamps[0].data.energy = 0
+        self.assertEqual(self.in_scene(second).bill.lights, 3)
+        self.assertEqual(self.in_scene(first).bill.lights, 7)
+        layer = first.view_layers.new("Few")
+        layer.layer_collection.exclude = False
+        inner = bpy.data.collections.new("Inner")
+        first.collection.children.link(inner)
+        self.scene = first
+        self.add_light("Inner", collection=inner, energy=20)
+        first.view_layers["Few"].layer_collection.children["Inner"].exclude = True
+        self.assertEqual(self.update().bill.lights, 8)
+        bpy.context.window.view_layer = first.view_layers["Few"]
+        self.assertEqual(self.update().bill.lights, 7)
+
+    def test_another_scenes_changes_change_nothing(self):
+        self.add_ring("First", (-4, 0, 1))
+        other = bpy.data.scenes.new("Second")
+        data = bpy.data.lights.new("Alone", "POINT")
+        lamp = bpy.data.objects.new("Alone", data)
+        other.collection.objects.link(lamp)
+        self.update()
+        version = preview.PREVIEW.version
+        lamp.location.x = 3
+        other.view_layers[0].update()
+        preview.note(other, other.view_layers[0].depsgraph)
+        self.assertFalse(preview.PREVIEW.is_stale)
+        self.assertEqual(preview.PREVIEW.update(bpy.context).bill.lights, 8)
+        self.assertEqual(preview.PREVIEW.version, version)
+
+    def test_the_panel_needs_no_overlay_to_be_right(self):
+        lamps = self.add_ring("Left", (-4, 0, 1))
+        bpy.context.view_layer.update()
+        self.assertEqual(preview.bill_lines(bpy.context)[0][0], "8 lights → 1 shadow map, 6 MiB")
+        bpy.data.objects.remove(lamps[0])
+        bpy.context.view_layer.update()
+        self.assertEqual(preview.bill_lines(bpy.context)[0][0], "7 lights → 1 shadow map, 6 MiB")
+
+    def test_the_engine_is_found_again_in_another_folder(self):
+        self.add_ring("Left", (-4, 0, 1))
+        self.update()
+        engine, settings = preview.PREVIEW.engine, bpy.context.preferences.addons[ADDON].preferences
+        self.scene.chandelier.d_init = 0
+        self.update()
+        self.assertIs(preview.PREVIEW.engine, engine)
+        self.addCleanup(setattr, settings, "tools_folder", "")
+        settings.tools_folder = str(self.folder)
+        self.update()
+        self.assertIsNot(preview.PREVIEW.engine, engine)
 
     def test_two_thousand_lights(self):
         for ring in range(250):
