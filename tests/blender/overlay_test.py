@@ -72,6 +72,15 @@ class Drag(unittest.TestCase):
         before, dragging = (colourful(view(picture(self.shots / f"{name}.png"))) for name in ("before", "dragging"))
         self.assertGreater((dragging & ~before).sum(), 500)
 
+    def test_undo_and_redo_are_drawn_each_time(self):
+        before, after = (colourful(view(picture(self.shots / f"{name}.png"))) for name in ("before", "after"))
+        for number in range(2):
+            for step, expected, other, maps in (("undo", before, after, 2), ("redo", after, before, 3)):
+                name = f"{step} {number}"
+                shown = colourful(view(picture(self.shots / f"{name}.png")))
+                self.assertEqual(self.log[name]["maps"], maps, name)
+                self.assertLess((shown ^ expected).sum(), 0.2 * (shown ^ other).sum(), name)
+
     def test_over_budget_lights_are_red(self):
         after, over_budget = (red(view(picture(self.shots / f"{name}.png"))) for name in ("after", "over_budget"))
         self.assertEqual((self.log["over_budget"]["maps"], self.log["over_budget"]["over_budget"]), (1, 2))

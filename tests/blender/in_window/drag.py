@@ -60,6 +60,7 @@ def select_one():
     lamp = bpy.data.objects["Ring 1 lamp 0"]
     bpy.context.view_layer.objects.active = lamp
     lamp.select_set(True)
+    bpy.ops.ed.undo_push(message="Made")
 
 
 def note(name):
@@ -97,10 +98,19 @@ def set_budget():
     bpy.context.scene.chandelier.budget_maps = 1
 
 
-def undo():
+def history(step):
     window, area, region = view_3d()
     with bpy.context.temp_override(window=window, area=area, region=region):
-        bpy.ops.ed.undo()
+        getattr(bpy.ops.ed, step)()
+
+
+def history_steps():
+    """What is drawn after each is of as many lights and maps, read anew, as something drawn before."""
+    for number in range(2):
+        for step in ("undo", "redo"):
+            yield lambda step=step: history(step)
+            yield lambda: None
+            yield lambda name=f"{step} {number}": shoot(name)
 
 
 def steps():
@@ -111,6 +121,7 @@ def steps():
     yield lambda: shoot("before")
     yield from drag_steps()
     yield lambda: shoot("after")
+    yield from history_steps()
     yield set_budget
     yield lambda: None
     yield lambda: shoot("over_budget")
