@@ -49,6 +49,27 @@ def test_spheres_are_circles_of_their_radius():
     assert np.linalg.norm(begin - end, axis=1).max() < 3.0 * 2 * np.pi / shapes.CIRCLE_SEGMENTS * 1.01
 
 
+def test_many_spheres_are_rounder_than_nothing_and_no_more_than_they_need():
+    def segments(count):
+        lines = shapes.spheres(np.zeros((count, 3), np.float32), np.ones(count), np.ones((count, 4), np.float32))
+        assert np.linalg.norm(lines.ends, axis=1) == pytest.approx(1, rel=1e-5)
+        return len(lines.ends) // 2
+
+    assert segments(250) == 250 * 3 * shapes.CIRCLE_SEGMENTS
+    assert segments(500) == segments(250)
+    assert segments(2000) == 2000 * 3 * shapes.LEAST_SEGMENTS
+
+
+def test_each_light_has_its_own_centres_colour():
+    rng = np.random.default_rng(1)
+    center = rng.integers(-1, 40, 300)
+    names = [f"lamp {i}" for i in range(300)]
+    colours = shapes.light_colours(center, np.zeros(300, bool), names)
+    for light, number in enumerate(center):
+        expected = shapes.colour_of(names[number]) if number >= 0 else shapes.OUT_OF_VIEW
+        assert colours[light] == pytest.approx(expected)
+
+
 def test_nothing_gives_nothing():
     empty = np.zeros((0, 3), np.float32)
     assert len(shapes.links(empty, np.zeros(0, int), np.zeros((0, 4), np.float32)).ends) == 0

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 CIRCLE_SEGMENTS = 48
+LEAST_SEGMENTS = 12
+MOST_FINE_SPHERES = 250  # with more, each gets fewer segments
 OUT_OF_VIEW = (0.45, 0.45, 0.45, 0.6)
 OVER_BUDGET = (1.0, 0.08, 0.05, 1.0)
 AXES = ((0, 1), (1, 2), (2, 0))  # planes of the three circles that stand for a sphere
@@ -31,8 +33,10 @@ def light_colours(center, over_budget, names):
     """(n, 4): the cluster's colour, red where the budget takes a light's own map, grey out of view."""
     colours = np.empty((len(center), 4), np.float32)
     colours[:] = OUT_OF_VIEW
-    for number in np.unique(center[center >= 0]):
-        colours[center == number] = colour_of(names[number])
+    in_view = center >= 0
+    numbers, which = np.unique(center[in_view], return_inverse=True)
+    if len(numbers):
+        colours[in_view] = np.array([colour_of(names[number]) for number in numbers.tolist()], np.float32)[which]
     colours[over_budget] = OVER_BUDGET
     return colours
 
@@ -44,12 +48,18 @@ def links(position, center, colours):
     return Lines(np.ascontiguousarray(ends, np.float32), np.repeat(colours[member], 2, axis=0))
 
 
+def circle_segments(count):
+    """Of each circle of so many spheres: beyond some all together take about the same."""
+    return max(LEAST_SEGMENTS, min(CIRCLE_SEGMENTS, CIRCLE_SEGMENTS * MOST_FINE_SPHERES // max(count, 1)))
+
+
 def spheres(centers, radii, colours):
     """Three circles of each."""
-    angle = np.linspace(0, 2 * np.pi, CIRCLE_SEGMENTS + 1)
-    circles = np.zeros((3, CIRCLE_SEGMENTS + 1, 3), np.float32)
+    segments = circle_segments(len(centers))
+    angle = np.linspace(0, 2 * np.pi, segments + 1)
+    circles = np.zeros((3, segments + 1, 3), np.float32)
     for circle, (a, b) in zip(circles, AXES):
         circle[:, a], circle[:, b] = np.cos(angle), np.sin(angle)
     unit = np.stack([circles[:, :-1], circles[:, 1:]], axis=2).reshape(-1, 3)
-    ends = centers[:, None, :] + np.asarray(radii)[:, None, None] * unit
+    ends = np.asarray(centers, np.float32)[:, None, :] + np.asarray(radii, np.float32)[:, None, None] * unit
     return Lines(np.ascontiguousarray(ends.reshape(-1, 3), np.float32), np.repeat(colours, len(unit), axis=0))
