@@ -50,7 +50,7 @@ export PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C DEBIAN_FRONTEND=noninteractiv
 # The mirror that the system itself uses for Debian's main archive.
 mirror="$(apt-get indextargets --format '$(LABEL) $(COMPONENT) $(REPO_URI)' 'Created-By: Packages' 2>/dev/null |
   awk '$1 == "Debian" && $2 == "main" { print $3; exit }' || true)"
-mirror="${mirror:-http://deb.debian.org/debian}"
+[ -n "$mirror" ] || cannot "the system's apt sources name no main archive"
 
 if [ ! -d "$root" ]; then
   rm -rf "$root.part"
