@@ -14,10 +14,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from .bill import MIB, Bill
+from .light_table import DYNAMIC, OWN_MAP
+from .photometry import RANGE_THRESHOLD_LX
 
 ABI = 1
 NONE = 0xFFFFFFFF
-DYNAMIC, OWN_MAP = 1, 2  # flags
 SELECTS = ("per-light", "light-clusters")
 FILTERS = ("hard", "pcf", "pcss")
 SCALINGS = ("grow", "paper-formula", "none")
@@ -49,7 +50,7 @@ class Settings:
     d_init_m: float = 0.5
     z_far_m: float = 30.0
     reference_share: float = 0.85
-    range_threshold_lx: float = 0.05
+    range_threshold_lx: float = RANGE_THRESHOLD_LX
     budget_maps: int = 0  # 0: none
     budget_mib: int = 0
 

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+RANGE_THRESHOLD_LX = 0.05  # chandelier-bake's --range-threshold: where a light ends that has no range
 LUMENS_PER_WATT = 683.0  # what glTF exporters take: that of light of 555 nm
 POINT, SPOT, DIRECTIONAL = range(3)
 

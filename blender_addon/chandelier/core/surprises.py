@@ -6,7 +6,6 @@ from typing import Callable
 
 from . import photometry
 
-DEFAULT_THRESHOLD_LX = 0.05  # chandelier-bake's --range-threshold
 UNTOUCHED_POWERS_W = (10, 1000)  # of a new lamp in Blender, and of the one in its first scene
 
 
@@ -61,7 +60,7 @@ def _scaled_text(light):
 
 
 def _range_text(light):
-    metres = photometry.range_of(photometry.intensity_of(photometry.POINT, light.power_w), DEFAULT_THRESHOLD_LX)
+    metres = photometry.range_of(photometry.intensity_of(photometry.POINT, light.power_w), photometry.RANGE_THRESHOLD_LX)
     return f"has no range: the baker will end it {metres:.0f} m away, and its shadow map holds all that is nearer"
 
 
