@@ -32,6 +32,8 @@ class ShadowMapCounter {
   ShadowMapCounter(std::span<const pack::Light> lights, const RenderSettings& settings);
   /// Any number above `most` where there are more.
   uint64_t count(float d_init_m, uint64_t most);
+  /// No later d_init will be larger, which makes counting faster.
+  void stay_within(float d_init_m) { maps_.stay_within(d_init_m); }
 
  private:
   Recipe recipe_;

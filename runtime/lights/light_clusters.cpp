@@ -3,12 +3,12 @@
 #include "lights/light_clusters.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <unordered_map>
 #include <utility>
 
 #include "lights/point_tree.h"
+#include "lights/selection_order.h"
 
 namespace chandelier::lights {
 namespace {
@@ -27,16 +27,14 @@ struct Candidate {
   }
 };
 
-}  // namespace
-
 class Selection {
  public:
   Selection(std::span<const ClusterLight> lights, const ClusterSettings& settings, const Blocked& blocked)
       : lights_(lights),
         settings_(settings),
         blocked_(blocked),
-        order_(selection_order(
-            [&](const ClusterLight& light) { return light.group == 0 && !has_own_center(light, settings); })),
+        order_(order_of(
+            [&](uint32_t light) { return lights[light].group == 0 && !has_own_center(lights[light], settings); })),
         round_(tree_of([&](uint32_t light) { return reach(lights_[light]) == 1.0; })),
         narrow_(tree_of([&](uint32_t light) { return reach(lights_[light]) > 1.0; })),
         d_min_(lights.size()),
@@ -44,7 +42,6 @@ class Selection {
         nearest_(lights.size()) {}
 
   LightClusters clusters();
-  size_t count(float d_init_m, size_t most);
 
  private:
   static constexpr uint32_t none = no_center;
@@ -62,13 +59,15 @@ class Selection {
   }
 
   template <typename Which>
-  std::vector<uint32_t> selection_order(Which which) const;
+  std::vector<uint32_t> order_of(Which which) const {
+    return selection_order(lights_, which, [&](uint32_t light) { return was_center(light); });
+  }
   template <typename Which>
   PointTree tree_of(Which which) const;
-  size_t select_centers(size_t most);
+  void select_centers();
   void cover(const PointTree& lights, double reach, uint32_t center);
   void join_nearest();
-  size_t join_groups();
+  void join_groups();
   bool is_nearest_of_all(const Candidate& nearest, uint32_t light) const;
   Candidate nearest_center(const PointTree& centers, uint32_t light) const;
 
@@ -83,25 +82,6 @@ class Selection {
   std::vector<Candidate> nearest_;
 };
 
-// Lights that were centres, the others; within both by descending priority, then range, ties by index. The bits of
-// floats that are not negative rise with their values.
-template <typename Which>
-std::vector<uint32_t> Selection::selection_order(Which which) const {
-  std::vector<std::pair<uint64_t, uint32_t>> keys;
-  keys.reserve(lights_.size());
-  for (uint32_t light = 0; light < lights_.size(); ++light) {
-    const ClusterLight& each = lights_[light];
-    if (!which(each)) continue;
-    const uint32_t falling = 0x7FFFFFFFu - std::bit_cast<uint32_t>(each.range_m + 0.0f);
-    keys.push_back({uint64_t{!was_center(light)} << 40 | uint64_t{255 - each.priority} << 32 | falling, light});
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<uint32_t> order;
-  order.reserve(keys.size());
-  for (const auto& [key, light] : keys) order.push_back(light);
-  return order;
-}
-
 template <typename Which>
 PointTree Selection::tree_of(Which which) const {
   std::vector<PointTree::Point> points;
@@ -111,25 +91,21 @@ PointTree Selection::tree_of(Which which) const {
 }
 
 // §3.1.2, from the centres' side: each covers the lights within its d_min, and who is reached uncovered is a centre.
-// Returns their number, and stops where it is above `most`.
-size_t Selection::select_centers(size_t most) {
+void Selection::select_centers() {
   for (uint32_t light = 0; light < lights_.size(); ++light) {
     d_min_[light] = scaled_d_min(settings_, lights_[light].position_ws);
     rank_[light] = none;
   }
   for (uint32_t light = 0; light < lights_.size(); ++light) nearest_[light] = {0.0, none, light};  // own centres
   for (const uint32_t light : order_) nearest_[light] = {std::numeric_limits<double>::infinity(), none, none};
-  size_t centers = 0;
-  for (uint32_t i = 0; i < order_.size() && centers <= most; ++i) {
+  for (uint32_t i = 0; i < order_.size(); ++i) {
     const uint32_t light = order_[i];
     if (nearest_[light].center != none) continue;
-    ++centers;
     rank_[light] = i;
     nearest_[light] = {0.0, i, light};
     cover(round_, 1.0, light);
     cover(narrow_, 2.0, light);
   }
-  return centers;
 }
 
 void Selection::cover(const PointTree& lights, double reach, uint32_t center) {
@@ -182,19 +158,17 @@ void Selection::join_nearest() {
   }
 }
 
-// Returns how many groups there are.
-size_t Selection::join_groups() {
+void Selection::join_groups() {
   std::unordered_map<uint32_t, uint32_t> center_of_group;
-  for (const uint32_t light : selection_order([](const ClusterLight& each) { return each.group != 0; })) {
+  for (const uint32_t light : order_of([&](uint32_t each) { return lights_[each].group != 0; })) {
     const uint32_t center = center_of_group.try_emplace(lights_[light].group, light).first->second;
     nearest_[light] = {distance_m(light, center), none, center};
   }
-  return center_of_group.size();
 }
 
 // In the order of their centres' indices: with d_init 0 that is the order of the lights.
 LightClusters Selection::clusters() {
-  select_centers(lights_.size());
+  select_centers();
   join_nearest();
   join_groups();
   LightClusters result;
@@ -217,12 +191,7 @@ LightClusters Selection::clusters() {
   return result;
 }
 
-size_t Selection::count(float d_init_m, size_t most) {
-  settings_.d_init_m = d_init_m;
-  const auto own = std::count_if(lights_.begin(), lights_.end(),
-                                 [&](const ClusterLight& light) { return has_own_center(light, settings_); });
-  return select_centers(most) + static_cast<size_t>(own) + join_groups();
-}
+}  // namespace
 
 float scaled_d_min(const ClusterSettings& settings, const glm::vec3& center_ws) {
   const double depth = straight_distance_m(settings.camera_ws, center_ws) / double{settings.z_far_m};
@@ -244,15 +213,6 @@ bool has_own_center(const ClusterLight& light, const ClusterSettings& settings) 
 LightClusters select_light_clusters(std::span<const ClusterLight> lights, const ClusterSettings& settings,
                                     const Blocked& blocked) {
   return Selection(lights, settings, blocked).clusters();
-}
-
-ClusterCounter::ClusterCounter(std::vector<ClusterLight> lights, const ClusterSettings& settings)
-    : lights_(std::move(lights)), selection_(std::make_unique<Selection>(lights_, settings, Blocked())) {}
-ClusterCounter::ClusterCounter(ClusterCounter&&) noexcept = default;
-ClusterCounter::~ClusterCounter() = default;
-
-size_t ClusterCounter::count(float d_init_m, size_t most) {
-  return selection_->count(d_init_m, most);
 }
 
 }  // namespace chandelier::lights

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -66,21 +65,5 @@ bool has_own_center(const ClusterLight& light, const ClusterSettings& settings);
 /// and within as much.
 LightClusters select_light_clusters(std::span<const ClusterLight> lights, const ClusterSettings& settings,
                                     const Blocked& blocked = {});
-
-/// How many clusters select_light_clusters() makes of the same lights, for one d_init after another: in less time.
-/// Without previous centres.
-class ClusterCounter {
- public:
-  ClusterCounter(std::vector<ClusterLight> lights, const ClusterSettings& settings);
-  ClusterCounter(ClusterCounter&&) noexcept;
-  ~ClusterCounter();
-
-  /// Any number above `most` where there are more.
-  size_t count(float d_init_m, size_t most);
-
- private:
-  std::vector<ClusterLight> lights_;
-  std::unique_ptr<class Selection> selection_;
-};
 
 }  // namespace chandelier::lights

@@ -319,15 +319,19 @@ MapCounter::MapCounter(std::span<const pack::Light> lights, const Recipe& recipe
   group_shares_ = std::adjacent_find(groups.begin(), groups.end()) != groups.end();
   in_view_ = near.size() + far.size();
   lights::ClusterSettings settings = cluster_settings(recipe, camera);
-  counters_.emplace_back(std::move(near), settings);
+  counters_.emplace_back(near, settings);
   settings.scaling = DistanceScaling::none;
-  counters_.emplace_back(std::move(far), settings);
+  counters_.emplace_back(far, settings);
 }
 
 size_t MapCounter::count(float d_init_m, size_t most) {
   size_t maps = 0;
   for (lights::ClusterCounter& counter : counters_) maps += counter.count(d_init_m, most);
   return maps;
+}
+
+void MapCounter::stay_within(float d_init_m) {
+  for (lights::ClusterCounter& counter : counters_) counter.stay_within(d_init_m);
 }
 
 std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count) {

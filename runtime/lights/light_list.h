@@ -8,6 +8,7 @@
 #include "frame/camera.h"
 #include "frame/recipe.h"
 #include "frame_schema.h"
+#include "lights/cluster_counter.h"
 #include "lights/light_clusters.h"
 #include "lights/surroundings.h"
 #include "pack_schema.h"
@@ -57,6 +58,8 @@ class MapCounter {
   bool group_shares() const { return group_shares_; }
   /// Any number above `most` where there are more.
   size_t count(float d_init_m, size_t most);
+  /// No later d_init will be larger, which makes counting faster.
+  void stay_within(float d_init_m);
 
  private:
   std::vector<lights::ClusterCounter> counters_;  // of directional lights, and of others

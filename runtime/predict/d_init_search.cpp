@@ -47,15 +47,17 @@ float farthest_apart_m(const LightList& list, float z_far_m) {
 
 // The first of ascending `values` that is good, or their number. One that is bad says of all up to bad_up_to() of it
 // that they are bad too: halving finds two neighbours of which one is bad and one good, and only what is between that
-// and the bad one may hold a good one before.
-template <typename IsGood, typename BadUpTo>
-size_t first_good(const std::vector<float>& values, IsGood is_good, BadUpTo bad_up_to) {
+// and the bad one may hold a good one before. What is looked at after the halving is no larger than settled_for() is
+// told.
+template <typename IsGood, typename BadUpTo, typename SettledFor>
+size_t first_good(const std::vector<float>& values, IsGood is_good, BadUpTo bad_up_to, SettledFor settled_for) {
   if (is_good(values.front())) return 0;
   size_t bad = 0, good = values.size();
   while (bad + 1 < good) {
     const size_t middle = (bad + good) / 2;
     (is_good(values[middle]) ? good : bad) = middle;
   }
+  if (good < values.size()) settled_for(values[good]);
   const auto unsure = std::upper_bound(values.begin(), values.end(), bad_up_to(values[bad])) - values.begin();
   for (auto i = static_cast<size_t>(unsure); i < bad; ++i)
     if (is_good(values[i])) return i;
@@ -89,7 +91,8 @@ float d_init_for_maps(Predictor& predictor, RenderSettings settings, const Budge
     ShadowMapCounter counter = predictor.counter(settings);
     const auto is_good = [&](float d_init_m) { return counter.count(d_init_m, most) <= most; };
     const auto bad_up_to = [&](float d_init_m) { return as_many_maps_up_to(settings.recipe, d_init_m); };
-    return narrowed_down(values, first_good(values, is_good, bad_up_to), for_maps.halvings, is_good);
+    const auto settled_for = [&](float d_init_m) { counter.stay_within(d_init_m); };
+    return narrowed_down(values, first_good(values, is_good, bad_up_to, settled_for), for_maps.halvings, is_good);
   }
   const auto is_good = [&](float d_init_m) {
     settings.recipe.d_init_m = d_init_m;
@@ -137,8 +140,8 @@ BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const 
   };
   const auto rmse_at = [&](float d_init_m) { return predictor.expected_rmse(settings, plan_at(d_init_m).plan); };
 
-  BudgetedPlan best{.prediction = plan_at(0.0f)};
-  const float farthest_m = farthest_apart_m(best.prediction.plan.list, settings.recipe.z_far_m);
+  BudgetedPlan best;
+  const float farthest_m = farthest_apart_m(predictor.lights_in_view(settings), settings.recipe.z_far_m);
   if (budget.max_error) {
     std::vector<float> values = ladder(farthest_m, for_error);
     std::reverse(values.begin(), values.end());
@@ -146,7 +149,7 @@ BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const 
     const auto found = std::find_if(values.begin(), values.end(), is_good) - values.begin();
     best.prediction = plan_at(narrowed_down(values, static_cast<size_t>(found), for_error.halvings, is_good));
   }
-  if (!keeps(best.prediction.stats, budget))
+  if (!budget.max_error || !keeps(best.prediction.stats, budget))
     best.prediction = plan_at(d_init_for_maps(predictor, settings, budget, ladder(farthest_m, for_maps)));
   best.recipe = settings.recipe;
   best.keeps_budget = keeps(best.prediction.stats, budget);

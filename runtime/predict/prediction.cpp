@@ -22,6 +22,10 @@ RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe) 
           .visibility_bytes = most_visibility_bytes};
 }
 
+float aspect_of(const RenderSettings& settings) {
+  return static_cast<float>(settings.width) / static_cast<float>(settings.height);
+}
+
 }  // namespace
 
 Predictor::Predictor(const pack::View& pack) : pack_(pack), surroundings_(pack) {
@@ -36,11 +40,17 @@ Prediction Predictor::plan(const RenderSettings& settings) {
   return prediction;
 }
 
+LightList Predictor::lights_in_view(const RenderSettings& settings) const {
+  Recipe recipe = settings.recipe;
+  recipe.select = Select::per_light;
+  return select_lights(pack_.lights, recipe, settings.camera, aspect_of(settings),
+                       {.out_of_view = settings.lights_out_of_view});
+}
+
 double Predictor::expected_rmse(const RenderSettings& settings, const FramePlan& plan) {
   if (plan.recipe.filter == Filter::hard && plan.list.center == plan.list.pack_light) return 0.0;  // the reference
-  const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
   return chandelier::expected_rmse(
-      plan.list, plan.recipe, settings.camera, aspect,
+      plan.list, plan.recipe, settings.camera, aspect_of(settings),
       {.surroundings = &surroundings_, .ambient = settings.ambient, .exposure_ev = settings.exposure_ev});
 }
 

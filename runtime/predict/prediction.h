@@ -21,6 +21,8 @@ class Predictor {
 
   /// Lights, shadow maps and views alone: cheap enough to try many settings. The counters of draws and triangles are 0.
   Prediction plan(const RenderSettings& settings);
+  /// Those of plan(), with a map for each.
+  LightList lights_in_view(const RenderSettings& settings) const;
   /// Of shadow maps of plan().
   ShadowMapCounter counter(const RenderSettings& settings) const { return {pack_.lights, settings}; }
   /// All counters of a frame.

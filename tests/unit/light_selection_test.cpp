@@ -5,6 +5,7 @@
 #include <random>
 
 #include "brute_force_selection.h"
+#include "lights/cluster_counter.h"
 #include "lights/point_tree.h"
 
 namespace chandelier::lights {
@@ -158,6 +159,30 @@ TEST(LightSelectionTest, LargeSetsEqualBruteForce) {
   Met met;
   for (uint32_t seed = 20000; seed < 20024 && !HasFatalFailure(); ++seed) compare_with_brute_force(seed, 2500, met);
   EXPECT_GT(met.members, 5000u);
+}
+
+void expect_counted(ClusterCounter& counter, const Case& drawn, float d_init_m, uint32_t seed) {
+  ClusterSettings settings = drawn.settings;
+  settings.d_init_m = d_init_m;
+  const size_t clusters = select_light_clusters(drawn.lights, settings).clusters.size();
+  ASSERT_EQ(counter.count(d_init_m, drawn.lights.size()), clusters) << "seed " << seed << ", d_init " << d_init_m;
+  if (clusters > 0) {
+    ASSERT_GT(counter.count(d_init_m, clusters - 1), clusters - 1) << "seed " << seed << ", d_init " << d_init_m;
+  }
+}
+
+// Also where the counter remembers neighbours: from some d_init on down, twice, and exactly at it.
+TEST(ClusterCounterTest, CountsTheClustersThatAreSelected) {
+  for (uint32_t seed = 30000; seed < 33000 && !HasFatalFailure(); ++seed) {
+    const Case drawn = random_case(seed, 100);
+    ClusterCounter counter(drawn.lights, drawn.settings);
+    for (const float part : {0.3f, 1.0f, 2.0f}) expect_counted(counter, drawn, part * drawn.settings.d_init_m, seed);
+    for (const float largest : {1.0f, 0.6f}) {
+      counter.stay_within(largest * drawn.settings.d_init_m);
+      for (const float part : {0.4f, 1.0f, 0.0f, 0.9f})
+        expect_counted(counter, drawn, part * largest * drawn.settings.d_init_m, seed);
+    }
+  }
 }
 
 TEST(PointTreeTest, VisitsAllWithinARadiusOnceAndHardlyMore) {

@@ -238,12 +238,15 @@ class Preview(BlenderCase):
             self.add_ring(f"Ring {ring}", (ring % 16 * 3, ring // 16 * 3, 1))
         self.assertEqual(self.update().bill.lights, 2000)
         lamp = bpy.data.objects["Ring 100 3"]
-        times = []
-        for step in range(10):
-            lamp.location.x += 0.5
-            bpy.context.view_layer.update()
-            began = time.perf_counter()
-            selection = preview.PREVIEW.update(bpy.context)
-            times.append(1000 * (time.perf_counter() - began))
-        self.assertEqual(selection.bill.shadow_maps, 251)
-        print(f"2,000 lights, one moved: {sorted(times)[5]:.1f} ms an update, median of 10")
+        for d_init, maps in ((1, 0), (1, 100), (0, 1000)):
+            self.scene.chandelier.d_init, self.scene.chandelier.budget_maps = d_init, maps
+            times = []
+            for step in range(10):
+                lamp.location.x += 0.5
+                bpy.context.view_layer.update()
+                began = time.perf_counter()
+                selection = preview.PREVIEW.update(bpy.context)
+                times.append(1000 * (time.perf_counter() - began))
+            self.assertLessEqual(selection.bill.shadow_maps, maps or 251)
+            self.assertEqual(selection.bill.over_budget, maps > 0)
+            print(f"2,000 lights, budget of {maps or 'no'} maps, one moved: {sorted(times)[5]:.1f} ms an update, median of 10")
