@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 [[noreturn]] void fail(const std::string& where, const std::string& what, const Json& value) {
   std::string shown = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
-  throw std::runtime_error(where + ": " + what + " (" + shown + ")");
+  throw std::runtime_error((where.empty() ? "" : where + ": ") + what + " (" + shown + ")");
 }
 
 std::string inside(const std::string& where, std::string_view key) {
@@ -241,7 +241,7 @@ nlohmann::ordered_json bill_json(const ChandelierPreviewBill& bill) {
 }  // namespace
 
 Request read_request(const nlohmann::json& json) {
-  if (!json.is_object()) fail("input", "is not an object", json);
+  if (!json.is_object()) fail("", "is not an object", json);
   constexpr std::string_view known[]{"lights", "settings", "camera"};
   refuse_unknown(json, "", known);
   Request request;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // chandelier-lights: which lights will share a shadow map, from JSON to JSON.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iostream>
-#include <iterator>
+#include <sstream>
 #include <string>
 
 #include "preview/light_json.h"
@@ -43,18 +44,24 @@ Examples:
 
 Exit status: 0 done, 1 failed, 2 wrong usage.)";
 
+std::string reason() {
+  return std::string(" (") + std::strerror(errno) + ")";
+}
+
 std::string read_all(const std::string& path) {
-  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error(path + ": cannot be opened (" + std::strerror(errno) + ")");
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) throw std::runtime_error(path + ": cannot be read (" + std::strerror(errno) + ")");
-  return text;
+  std::ifstream file;
+  if (path != "-") file.open(path, std::ios::binary);
+  if (!file) throw std::runtime_error("cannot be opened" + reason());
+  std::istream& in = path == "-" ? std::cin : file;
+  std::ostringstream text;
+  if (in.peek() != std::istream::traits_type::eof()) text << in.rdbuf();
+  if (in.bad() || text.bad()) throw std::runtime_error("cannot be read" + reason());
+  return std::move(text).str();
 }
 
 nlohmann::json parse(const std::string& text) {
   return nlohmann::json::parse(text, [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
-    if (depth > most_depth) throw std::runtime_error("input: is nested too deeply (" + std::to_string(depth) + ")");
+    if (depth > most_depth) throw std::runtime_error("is nested too deeply (" + std::to_string(depth) + ")");
     return true;
   });
 }
@@ -106,7 +113,8 @@ int main(int argc, char** argv) {
     if (put(selection_of(read_all(path)))) return 0;
     std::fprintf(stderr, "chandelier-lights: error: cannot write to standard output\n");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "chandelier-lights: error: %s\n", in_one_line(error.what()).c_str());
+    const std::string where = path == "-" ? "standard input" : path;
+    std::fprintf(stderr, "chandelier-lights: error: %s\n", in_one_line(where + ": " + error.what()).c_str());
   }
   return 1;
 }

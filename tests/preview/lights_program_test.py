@@ -34,7 +34,7 @@ class Program(unittest.TestCase):
     def assert_refused(self, text, because):
         done = lights(stdin=text)
         self.assertEqual((done.returncode, done.stdout), (1, ""))
-        self.assertRegex(done.stderr, r"\Achandelier-lights: error: [^\n]+\n\Z")
+        self.assertRegex(done.stderr, r"\Achandelier-lights: error: standard input: [^\n]+\n\Z")
         self.assertIn(because, done.stderr)
 
     def test_the_examples_of_its_help_work(self):
@@ -65,7 +65,7 @@ class Program(unittest.TestCase):
     def test_bad_input_is_one_line_with_its_place(self):
         place = {"position": [[0, 0, 0], [1, 0, 0]]}
         for request, because in (
-                ([], "input: is not an object ([])"), ({"light": {}}, "light: is none of lights, settings, camera"),
+                ([], "standard input: is not an object ([])"), ({"light": {}}, "light: is none of lights, settings, camera"),
                 ({"lights": [1]}, "lights: is not an object"), ({"lights": {"positions": []}}, "lights.positions: is none of"),
                 ({"lights": {"type": ["point"]}}, "lights.position: is missing"),
                 ({"lights": {"position": [[0, 0]]}}, "lights.position[0]: is not three numbers ([0,0])"),
@@ -101,10 +101,30 @@ class Program(unittest.TestCase):
     def test_wrong_usage(self):
         self.assertEqual(lights("--sideways").returncode, 2)
         self.assertEqual(lights("a", "b").returncode, 2)
-        done = lights("/nowhere/lights.json")
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("/nowhere/lights.json: cannot be opened", done.stderr)
         self.assertEqual(lights("--version").returncode, 0)
+
+    def test_errors_name_the_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            broken, wrong, empty = (pathlib.Path(folder) / name for name in ("broken.json", "wrong.json", "empty.json"))
+            broken.write_text('{"lights": ')
+            wrong.write_text('{"settings": {"d_init_m": "far"}}')
+            empty.touch()
+            for path, because in (("/nowhere/lights.json", "cannot be opened (No such file or directory)"),
+                                  (folder, "cannot be read (Is a directory)"), (broken, "[json.exception.parse_error"),
+                                  (empty, "[json.exception.parse_error"), (wrong, 'settings.d_init_m: is not a number ("far")')):
+                with self.subTest(path):
+                    done = lights(str(path))
+                    self.assertEqual((done.returncode, done.stdout), (1, ""))
+                    self.assertTrue(done.stderr.startswith(f"chandelier-lights: error: {path}: {because}"), done.stderr)
+                    self.assertEqual(done.stderr.count("\n"), 1)
+
+    def test_output_that_cannot_be_written(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full")
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([LIGHTS], input="{}", stdout=full, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, "chandelier-lights: error: cannot write to standard output\n"))
 
 
 class Library(unittest.TestCase):

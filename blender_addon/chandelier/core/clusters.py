@@ -6,6 +6,7 @@ import ctypes
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -224,7 +225,7 @@ class Program:
         except (OSError, subprocess.TimeoutExpired) as error:
             raise PreviewError(f"{self.path}: cannot be run ({error})") from error
         if done.returncode != 0:
-            raise PreviewError(done.stderr.strip().replace("chandelier-lights: error: ", "") or f"{self.path}: failed")
+            raise PreviewError(re.sub(r"^chandelier-lights: error: (standard input: )?", "", done.stderr.strip()) or f"{self.path}: failed")
         answer = json.loads(done.stdout)
         center = np.array([-1 if number is None else number for number in answer["center_of_light"]], np.int32)
         over_budget = np.zeros(len(center), np.bool_)
