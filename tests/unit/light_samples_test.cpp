@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// What selection by error knows of a picture: what samples see, mean materials, and the curve by which it is shown.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lights/shown_curve.h"
+#include "sampled_scene.h"
+
+namespace chandelier {
+namespace {
+
+using test::divided_floor;
+using test::Sampled;
+
+TEST(LightSamplesTest, PointsAreLitFromTheirSideOfTheWallAlone) {
+  const Sampled s(divided_floor());
+  uint32_t left = 0, right = 0;
+  for (uint32_t p = 0; p < s.samples->points().size(); ++p) {
+    const glm::vec3 at = s.samples->points()[p].position_ws;
+    if (at.y > 0.1f) continue;  // the wall's top
+    EXPECT_NEAR(glm::distance(s.samples->points()[p].normal_ws, glm::vec3(0, 1, 0)), 0.0f, 1e-5f);
+    for (uint32_t light = 0; light < 4; ++light) EXPECT_EQ(s.samples->sees(light, p), (light < 2) == (at.x < 0));
+    (at.x < 0 ? left : right) += 1;
+  }
+  EXPECT_GT(left, 500u);
+  EXPECT_GT(right, 500u);
+}
+
+// As it is drawn: a room's ceiling does not hide the room from above, but where its material has two sides.
+TEST(LightSamplesTest, BacksHideNothing) {
+  for (const bool double_sided : {false, true}) {
+    test::Scene scene;
+    pack::Material material = test::plain_material(glm::vec3(0.5f));
+    scene.add(test::level_square(glm::vec3(0), 4), scene.add_material(material));
+    material.double_sided = double_sided ? 1 : 0;
+    scene.add(test::quad({0, 4, 0}, {4, 0, 0}, {0, 0, 4}), scene.add_material(material));  // its front looks down
+    scene.lights.push_back(test::point_light({0, 2, 0}, 10, 8));
+    const Sampled s(scene);
+    ASSERT_GT(s.samples->points().size(), 1000u);
+    for (const auto& point : s.samples->points()) EXPECT_NEAR(point.position_ws.y, double_sided ? 4.0f : 0.0f, 0.01f);
+    EXPECT_EQ(s.samples->reach(0).empty(), double_sided);
+  }
+}
+
+// What a light adds is what shading/brdf.glsl says: rough white paint, straight below the light.
+TEST(LightSamplesTest, AddsWhatTheShaderAdds) {
+  test::Scene scene;
+  scene.add(test::level_square(glm::vec3(0), 4), scene.add_material(test::plain_material(glm::vec3(0.5f))));
+  scene.lights.push_back(test::point_light({0, 2, 0}, 10, 4));
+  const Sampled s(scene);
+  float nearest = INFINITY, luminance = 0.0f;
+  for (const auto& reach : s.samples->reach(0)) {
+    const float away = glm::length(
+        glm::vec2(s.samples->points()[reach.point].position_ws.x, s.samples->points()[reach.point].position_ws.z));
+    if (away >= nearest) continue;
+    nearest = away;
+    luminance = reach.radiance.x;
+  }
+  ASSERT_LT(nearest, 0.1f);
+  // Illuminance 10 / 4 * (1 - 1/16); Fresnel 0.04 off the diffuse part; the microfacet layer D V F = 1/pi * 1/4 * 0.04.
+  const float expected = 2.5f * 15.0f / 16.0f * (0.96f * 0.5f + 0.04f * 0.25f) / 3.14159265f;
+  EXPECT_NEAR(luminance / std::exp2(s.samples->exposure_ev()) / expected, 1.0f, 0.01f);
+}
+
+TEST(ShownCurveTest, TableAndFormulaAgree) {
+  const ShownCurve table;
+  for (float x = 0.0f; x < 40.0f; x = x * 1.01f + 1e-4f) EXPECT_NEAR(table(x), shown(x), 3e-4f) << x;
+  EXPECT_EQ(shown(0.0f), 0.0f);
+  EXPECT_NEAR(shown(1e9f), 1.0f, 1e-6f);
+  // Narkowicz's curve at 0.18: 0.0869 / 0.3249, by sRGB.
+  EXPECT_NEAR(shown(0.18f), 1.055f * std::pow(0.086724f / 0.324932f, 1.0f / 2.4f) - 0.055f, 1e-4f);
+}
+
+TEST(MeanMaterialTest, TexturesCountByTheirMean) {
+  test::Scene scene;
+  pack::Material material = test::plain_material({1.0f, 0.5f, 1.0f});
+  material.base_color_texture = scene.add_texture(2, 1, {0xFF000000u, 0xFFFF80FFu});
+  scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
+  // BC1: both ends of a red ramp and the two colours between, a quarter of the texels each.
+  pack::Image bc1{.width = 4, .height = 4, .level_count = 1, .format = pack::ImageFormat::bc1_unorm};
+  const std::array<uint8_t, 8> block{0x00, 0xF8, 0x00, 0x00, 0b11100100, 0b11100100, 0b11100100, 0b11100100};
+  material.base_color_texture = scene.add_texture(bc1, std::as_bytes(std::span(block)));
+  scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
+  const auto means = mean_materials(scene.open().view());
+  ASSERT_EQ(means.size(), 2u);
+  EXPECT_NEAR(glm::distance(means[0].base_color, {0.5f, 0.5f * 128 / 255 / 2, 0.5f}), 0.0f, 1e-3f);
+  EXPECT_NEAR(glm::distance(means[1].base_color, {0.5f, 0.0f, 0.0f}), 0.0f, 1e-3f);
+}
+
+}  // namespace
+}  // namespace chandelier
