@@ -39,8 +39,9 @@ def export(context, path):
 
 
 def run_exporter(context, path, **options):
-    active = context.view_layer.objects.active
+    scene, active = context.scene, context.view_layer.objects.active
     mode = active.mode if active else "OBJECT"
+    frame, subframe = scene.frame_current, scene.frame_subframe
     try:
         bpy.ops.export_scene.gltf(**options)
     except RuntimeError as error:
@@ -48,6 +49,8 @@ def run_exporter(context, path, **options):
     finally:
         if active and active.mode != mode:
             bpy.ops.object.mode_set(mode=mode)  # the exporter leaves it
+        if (scene.frame_current, scene.frame_subframe) != (frame, subframe):
+            scene.frame_set(frame, subframe=subframe)  # where there are animations it ends at their last one
 
 
 def reason(error):

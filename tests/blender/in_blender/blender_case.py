@@ -46,6 +46,26 @@ class BlenderCase(unittest.TestCase):
             setattr(data, key, value)
         return self.add(name, data, location, collection)
 
+    def link_library(self, *lights):
+        """Saves these lights as a library's collection, and links it into an empty scene."""
+        collection = bpy.data.collections.new("Library")
+        self.scene.collection.children.link(collection)
+        for light in lights:
+            self.scene.collection.objects.unlink(light)
+            collection.objects.link(light)
+        path = str(self.folder / "library.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.read_homefile(use_empty=True)
+        self.scene = bpy.context.scene
+        with bpy.data.libraries.load(path, link=True) as (_, target):
+            target.collections = ["Library"]
+        return target.collections[0]
+
+    def add_instance(self, collection, location=(0, 0, 0)):
+        instancer = self.add("Here", location=location)
+        instancer.instance_type, instancer.instance_collection = "COLLECTION", collection
+        return instancer
+
     def select(self, *objects, active=None):
         bpy.context.view_layer.update()
         for other in bpy.context.view_layer.objects:

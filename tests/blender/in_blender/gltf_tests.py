@@ -289,22 +289,46 @@ class Baked(GltfCase):
         self.assertNotEqual(groups[0], other["group"])
 
     def test_a_linked_library(self):
-        collection = bpy.data.collections.new("Library")
-        self.scene.collection.children.link(collection)
-        light = self.lamp("Linked", location=(0, 0, 2), collection=collection)
+        light = self.lamp("Linked", location=(0, 0, 2))
         light.data.chandelier.priority = 77
-        path = str(self.folder / "library.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-        bpy.ops.wm.read_homefile(use_empty=True)
-        self.scene = bpy.context.scene
-        with bpy.data.libraries.load(path, link=True) as (_, target):
-            target.collections = ["Library"]
-        instancer = self.add("Here", location=(3, 0, 0))
-        instancer.instance_type, instancer.instance_collection = "COLLECTION", target.collections[0]
+        self.add_instance(self.link_library(light), (3, 0, 0))
         self.export()
         ((linked,),) = self.baked().values()
         self.assertClose(linked["position_ws"], (3, 2, 0))
         self.assertEqual((linked["priority"], float32(linked["range_m"])), (77, float32(RANGE_M)))
+
+    def test_a_library_override(self):
+        """A linked light with another place, power and priority here."""
+        light = self.lamp("Linked", location=(0, 0, 2))
+        light.data.chandelier.priority = 77
+        linked = self.link_library(light).objects["Linked"]
+        self.scene.collection.objects.link(linked)
+        override = linked.override_create(remap_local_usages=True)
+        override.data = linked.data.override_create(remap_local_usages=True)
+        override.location, override.data.energy, override.data.chandelier.priority = (1, 2, 3), 2 * WATTS, 9
+        bpy.context.view_layer.update()
+        table = part("scene_lights").read(bpy.context.evaluated_depsgraph_get())
+        self.assertEqual((len(table), table.priority[0], table.power_w[0]), (1, 9, float32(2 * WATTS)))
+        self.assertClose(table.position[0], (1, 2, 3))
+        self.export()
+        self.assertEqual([light["extras"]["chandelier"]["priority"] for light in self.lights().values()], [9])
+        ((baked,),) = self.baked().values()
+        self.assertClose(baked["position_ws"], (1, 3, -2))
+        self.assertEqual((baked["priority"], float32(baked["range_m"])), (9, float32(RANGE_M)))
+
+    def test_an_animation_leaves_the_frame_as_it_was(self):
+        light = self.lamp("Moving")
+        self.scene.frame_end = 20
+        for frame in (1, 20):
+            light.location.x = frame
+            light.keyframe_insert("location", frame=frame)
+        self.scene.frame_set(8, subframe=0.5)
+        place = light.location.x
+        self.export()
+        self.assertEqual((self.scene.frame_current, self.scene.frame_subframe), (8, 0.5))
+        self.assertEqual(light.location.x, place)
+        ((baked,),) = self.baked().values()
+        self.assertTrue(baked["dynamic"])
 
     def test_what_is_not_rendered_is_not_exported(self):
         self.lamp("Shown")

@@ -67,18 +67,9 @@ class Read(BlenderCase):
         self.assertClose(table.position[table.names.index("Table 2/Candle")], (10, 0, 1))
 
     def test_linked_libraries(self):
-        collection = bpy.data.collections.new("Library")
-        self.scene.collection.children.link(collection)
-        light = self.add_light("Linked", location=(0, 0, 2), collection=collection, energy=7)
+        light = self.add_light("Linked", location=(0, 0, 2), energy=7)
         light.data.chandelier.priority = 200
-        path = str(self.folder / "library.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-        bpy.ops.wm.read_homefile(use_empty=True)
-        self.scene = bpy.context.scene
-        with bpy.data.libraries.load(path, link=True) as (_, target):
-            target.collections = ["Library"]
-        instancer = self.add("Here", location=(3, 0, 0))
-        instancer.instance_type, instancer.instance_collection = "COLLECTION", target.collections[0]
+        self.add_instance(self.link_library(light), (3, 0, 0))
         table = self.table()
         self.assertEqual(len(table), 1)
         self.assertTrue(table.names[0].startswith("Here/Linked"), table.names)
