@@ -116,6 +116,8 @@ struct Light {
   std::uint32_t priority = 128;    // 0 to 255
   bool dynamic = false;
   bool unclustered = false;
+  bool shadowless = false;
+  float radius_m = 0;  // of a directional light: the tangent of half its angle
   std::string group;  // name of the lights that share its shadow map; empty: none
 };
 

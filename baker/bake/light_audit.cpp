@@ -250,11 +250,12 @@ void audit_places(Audit& audit, const Numbers& placed) {
 
 void audit_groups(Audit& audit) {
   std::vector<std::array<bool, 2>> holds(audit.pack.lights.size() + 1);  // of each group: placed, directional lights
-  Numbers opted_out, mixed;
+  Numbers opted_out, mixed, shadowless;
   for (std::size_t i = 0; i < audit.pack.lights.size(); ++i) {
     const pack::Light& light = audit.baked(i);
     holds[light.group][light.type == pack::LightType::directional] = true;
     if (light.group != 0 && light.unclustered) opted_out.push_back(i);
+    if (light.group != 0 && light.shadowless) shadowless.push_back(i);
   }
   for (std::size_t i = 0; i < audit.pack.lights.size(); ++i) {
     const pack::Light& light = audit.baked(i);
@@ -262,6 +263,7 @@ void audit_groups(Audit& audit) {
     if (light.group != 0 && both && light.type == pack::LightType::directional) mixed.push_back(i);
   }
   audit.name("grouped_and_unclustered", "in a group and cluster false: they share the group's shadow map", opted_out);
+  audit.name("grouped_and_shadowless", "in a group and shadow false: they take no shadow map", shadowless);
   audit.name("mixed_groups", "directional in a group with lights of another type: they share no map with those", mixed);
 }
 

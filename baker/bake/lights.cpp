@@ -41,6 +41,8 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     out.priority = light.priority;
     out.dynamic = light.dynamic || light.node != kNone;
     out.unclustered = light.unclustered;
+    out.shadowless = light.shadowless;
+    out.radius_m = light.radius_m;
     out.group = groups.number(light.group);
     out.node = light.node;
     out.bounds_center_ws = light.position_ws;

@@ -12,9 +12,9 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::array<std::string_view, 6> kKnownKeys = {"cluster", "dynamic",  "group",
-                                                        "power_w", "priority", "range_m"};
-constexpr double kMostPriority = 255, kMostPower = 1e12, kLeastRange = 1e-12, kMostRange = 3e38;
+constexpr std::array<std::string_view, 8> kKnownKeys = {"cluster",  "dynamic",  "group",   "power_w",
+                                                        "priority", "radius_m", "range_m", "shadow"};
+constexpr double kMostPriority = 255, kMostPower = 1e12, kLeastRange = 1e-12, kMostRange = 3e38, kMostRadius = 1e6;
 
 /// One `extras.chandelier` and where it is; each member function reads one of its keys, where it is there.
 struct Extras {
@@ -72,6 +72,8 @@ void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, L
   if (const auto value = extras.integer("priority", 0, kMostPriority)) out.priority = *value;
   if (const auto value = extras.boolean("dynamic")) out.dynamic = *value;
   if (const auto value = extras.boolean("cluster")) out.unclustered = !*value;
+  if (const auto value = extras.boolean("shadow")) out.shadowless = !*value;
+  if (const auto value = extras.number("radius_m", 0, kMostRadius)) out.radius_m = static_cast<float>(*value);
   if (const auto value = extras.text("group")) out.group = *value;
   if (const auto value = extras.number("power_w", 0, kMostPower)) out.power_w = static_cast<float>(*value);
   if (const auto value = extras.number("range_m", kLeastRange, kMostRange)) out.range_m = static_cast<float>(*value);

@@ -104,6 +104,8 @@ Json lights(const pack::File& file) {
                     {"priority", light.priority},
                     {"dynamic", light.dynamic == 1},
                     {"unclustered", light.unclustered == 1},
+                    {"shadowless", light.shadowless == 1},
+                    {"radius_m", light.radius_m},
                     {"group", light.group}});
   }
   return list;

@@ -31,6 +31,7 @@ void add_lights(const pack::View& view, Summary& summary) {
     ++summary.lights_of_source[static_cast<std::size_t>(light.range_source)];
     summary.dynamic_lights += light.dynamic;
     summary.unclustered_lights += light.unclustered;
+    summary.shadowless_lights += light.shadowless;
     summary.grouped_lights += light.group != 0;
     summary.light_groups = std::max<std::uint64_t>(summary.light_groups, light.group);  // numbered from 1
     if (light.range_source != pack::RangeSource::unbounded) ranges.add(light.range_m);

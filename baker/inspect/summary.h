@@ -44,7 +44,7 @@ struct Summary {
   std::array<std::uint64_t, 3> lights_of_type = {};    ///< By LightType.
   std::array<std::uint64_t, 3> lights_of_source = {};  ///< By RangeSource.
   std::uint64_t dynamic_lights = 0, unclustered_lights = 0;
-  std::uint64_t grouped_lights = 0, light_groups = 0;
+  std::uint64_t grouped_lights = 0, light_groups = 0, shadowless_lights = 0;
   std::uint64_t closed_batches = 0;
   std::uint64_t dynamic_instances = 0, skinned_instances = 0;
   Hierarchy batch_bvh, instance_bvh, triangle_bvh, light_bvh;

@@ -122,10 +122,13 @@ void put_light_table(Out out, const pack::File& file) {
 }
 
 void put_lights(Out out, const pack::File& file, const Summary& summary, bool all_lights) {
-  fmt::format_to(out, "lights     {}: {} point, {} spot, {} directional; {} dynamic, {} unclustered, {} in {} groups\n",
-                 file.view().lights.size(), summary.lights_of_type[0], summary.lights_of_type[1],
-                 summary.lights_of_type[2], summary.dynamic_lights, summary.unclustered_lights, summary.grouped_lights,
-                 summary.light_groups);
+  fmt::format_to(
+      out,
+      "lights     {}: {} point, {} spot, {} directional; {} dynamic, {} unclustered, {} without shadow, {} in "
+      "{} groups\n",
+      file.view().lights.size(), summary.lights_of_type[0], summary.lights_of_type[1], summary.lights_of_type[2],
+      summary.dynamic_lights, summary.unclustered_lights, summary.shadowless_lights, summary.grouped_lights,
+      summary.light_groups);
   if (summary.lights_of_type[0] + summary.lights_of_type[1] > 0) {
     fmt::format_to(out, "  range      {:.4g} to {:.4g} m; {} authored, {} derived at {:.3g} lx\n", summary.range_m.min,
                    summary.range_m.max, summary.lights_of_source[0], summary.lights_of_source[1],

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
-from . import export, handover
+from . import export, handover, scene_lights
 from .cameras import perspective_camera
 from .core import photometry, picture_error, tools
 from .preferences import tool_folders
@@ -42,6 +42,7 @@ def cycles_picture(scene, path, samples, size, **cycles):
                          "resolution_percentage": 100, "use_compositing": False, "use_sequencer": False, "use_border": False,
                          "film_transparent": False, "use_file_extension": False}),
                (image, {"file_format": "OPEN_EXR", "color_mode": "RGB", "color_depth": "32"}), (scene, {"world": None})]
+    changes += [(light.cycles, {"cast_shadow": scene_lights.casts_shadow(light)}) for light in bpy.data.lights if hasattr(light, "cycles")]
     with changed(*changes):  # Cycles has its settings once it is the engine
         with changed((scene.cycles, {**DIRECT_ONLY, "samples": samples, **cycles})):
             bpy.ops.render.render(write_still=True, scene=scene.name)

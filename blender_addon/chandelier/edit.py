@@ -42,9 +42,9 @@ class CHANDELIER_OT_edit_lights(bpy.types.Operator):
     use_range: BoolProperty(name="Range", options={"SKIP_SAVE"})
     range: FloatProperty(name="Range", description="0: no Custom Distance", default=8, min=0, soft_max=100, unit="LENGTH")
     use_radius: BoolProperty(name="Radius", options={"SKIP_SAVE"})
-    radius: FloatProperty(
-        name="Radius", description="For Blender's own renders: neither exported nor used by the player", default=0.05, min=0, soft_max=1,
-        unit="LENGTH")
+    radius: FloatProperty(name="Radius", description="Of what shines: softens shadows", default=0.05, min=0, soft_max=1, unit="LENGTH")
+    use_shadow: BoolProperty(name="Shadow", options={"SKIP_SAVE"})
+    shadow: BoolProperty(name="Throws a Shadow", default=False)
     use_priority: BoolProperty(name="Priority", options={"SKIP_SAVE"})
     priority: IntProperty(name="Priority", default=128, min=0, max=255)
     use_dynamic: BoolProperty(name="Dynamic", options={"SKIP_SAVE"})
@@ -81,6 +81,8 @@ class CHANDELIER_OT_edit_lights(bpy.types.Operator):
             data.cutoff_distance = self.range if self.range > 0 else data.cutoff_distance
         if self.use_radius:
             data.shadow_soft_size = self.radius
+        if self.use_shadow:
+            data.use_shadow = self.shadow
         for name in ("priority", "dynamic", "cluster", "group"):
             if getattr(self, f"use_{name}"):
                 setattr(data.chandelier, name, getattr(self, name))
@@ -88,7 +90,7 @@ class CHANDELIER_OT_edit_lights(bpy.types.Operator):
     def draw(self, context):
         layout = self.layout
         fields = {"power": "power" if self.power_by == "WATTS" else "factor"}
-        for name in ("power", "temperature", "range", "radius", "priority", "dynamic", "cluster", "group"):
+        for name in ("power", "temperature", "range", "radius", "shadow", "priority", "dynamic", "cluster", "group"):
             row = layout.row()
             row.prop(self, f"use_{name}")
             values = row.row()

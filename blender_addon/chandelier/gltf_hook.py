@@ -51,12 +51,17 @@ def extras_of(data, power_w):
     range_m = scene_lights.range_of(data)
     if range_m > 0:
         extras["range_m"] = range_m
+    radius_m = scene_lights.radius_of(data)
+    if radius_m > 0:
+        extras["radius_m"] = radius_m
     if settings.priority != 128:
         extras["priority"] = settings.priority
     if settings.dynamic:
         extras["dynamic"] = True
     if not settings.cluster:
         extras["cluster"] = False
+    if not scene_lights.casts_shadow(data):
+        extras["shadow"] = False
     if settings.group:
         extras["group"] = settings.group
     return extras

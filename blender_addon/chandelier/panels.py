@@ -198,6 +198,9 @@ class CHANDELIER_PT_light(Properties, bpy.types.Panel):
             distance.active = light.use_custom_distance
             distance.prop(light, "cutoff_distance", text="")
             layout.prop(light, "shadow_soft_size", text="Radius")
+        if light.type == "SUN":
+            layout.prop(light, "angle")
+        layout.prop(light, "use_shadow", text="Shadow")
 
 
 class CHANDELIER_PT_scene(Properties, bpy.types.Panel):

@@ -33,9 +33,7 @@ class Placing:
     range: FloatProperty(
         name="Range", description="Where the lights end (their Custom Distance); 0: nowhere, and the baker derives it", default=8,
         min=0, soft_max=100, unit="LENGTH")
-    radius: FloatProperty(
-        name="Radius", description="Of each light, for Blender's own renders: neither exported nor used by the player", default=0.05,
-        min=0, soft_max=1, unit="LENGTH")
+    radius: FloatProperty(name="Radius", description="Of each light: softens its shadow", default=0.05, min=0, soft_max=1, unit="LENGTH")
     share: BoolProperty(
         name="Share Data", description="All have one light data-block, so that one edit changes all", default=False)
 

@@ -47,6 +47,16 @@ def range_of(light):
     return light.cutoff_distance if light.use_custom_distance and light.type != "SUN" else 0.0
 
 
+def radius_of(light):
+    """Metres; of a sun the tangent of half its angle."""
+    return math.tan(light.angle / 2) if light.type == "SUN" else light.shadow_soft_size
+
+
+def casts_shadow(light):
+    """Not where it is switched off for EEVEE, or for Cycles where that has a switch of its own."""
+    return light.use_shadow and getattr(getattr(light, "cycles", None), "cast_shadow", True)
+
+
 def record_of(light, groups):
     """A light's row of light_table.DATA; None of one that glTF has not, or that is dark. `groups`: name -> number, grows."""
     kind = KINDS.get(light.type)
@@ -58,9 +68,9 @@ def record_of(light, groups):
     settings = light.chandelier
     group = groups.setdefault(settings.group, len(groups)) if settings.group else light_table.NO_GROUP
     return light_table.record(
-        kind, power_w, colour, range_m=range_of(light), radius_m=light.shadow_soft_size
-        if kind != photometry.DIRECTIONAL else 0.0, spot_outer_rad=light.spot_size / 2 if kind == photometry.SPOT else math.pi,
-        dynamic=settings.dynamic, cluster=settings.cluster, priority=settings.priority, group=group)
+        kind, power_w, colour, range_m=range_of(light), radius_m=radius_of(light),
+        spot_outer_rad=light.spot_size / 2 if kind == photometry.SPOT else math.pi, dynamic=settings.dynamic,
+        cluster=settings.cluster, shadow=casts_shadow(light), priority=settings.priority, group=group)
 
 
 def not_rendered():

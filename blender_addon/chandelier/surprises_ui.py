@@ -47,7 +47,7 @@ def record_of(meshes, light, matrix, users, hidden):
     return surprises.Light(
         name=light.name_full, kind=data.type, power_w=scene_lights.emission_of(data)[0], white=tuple(data.color) == (1, 1, 1),
         has_range=data.use_custom_distance, users=users, scale=scale,
-        sheared=bool(abs(unit @ unit.T - np.eye(3)).max() > 1e-3), casts_shadow=data.use_shadow,
+        sheared=bool(abs(unit @ unit.T - np.eye(3)).max() > 1e-3),
         own_nodes=data.use_nodes and (leaves is None or any(socket.is_linked for socket in leaves.inputs)),
         inside="" if data.type == "SUN" else meshes.around(matrix.translation),
         hidden=hidden)

@@ -38,9 +38,9 @@ float aspect_of(const RenderSettings& settings) {
 }
 
 // LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved. But the
-// reference knows no groups, which are what their lights' author asked for.
-bool reference_is_cheaper(const Recipe& recipe, size_t lights, size_t maps, bool a_group_shares) {
-  return recipe.select == Select::light_clusters && maps > 0 && !a_group_shares &&
+// reference knows no groups and no lights with a radius, which are what their author asked for.
+bool reference_is_cheaper(const Recipe& recipe, size_t lights, size_t maps, bool is_authored) {
+  return recipe.select == Select::light_clusters && maps > 0 && !is_authored &&
          static_cast<float>(maps) >= recipe.reference_share * static_cast<float>(lights);
 }
 
@@ -66,8 +66,8 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
   FramePlan plan{.recipe = settings.recipe};
   auto start = Clock::now();
   plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, aids);
-  if (reference_is_cheaper(plan.recipe, plan.list.lights_in_view, plan.list.maps.size(),
-                           group_shares(lights, plan.list))) {
+  if (reference_is_cheaper(plan.recipe, plan.list.shadowed_in_view(), plan.list.maps.size(),
+                           plan.list.has_area_lights || group_shares(lights, plan.list))) {
     plan.recipe = reference_of(plan.recipe);
     plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, {.out_of_view = aids.out_of_view});
   }
@@ -91,7 +91,8 @@ ShadowMapCounter::ShadowMapCounter(std::span<const pack::Light> lights, const Re
 
 uint64_t ShadowMapCounter::count(float d_init_m, uint64_t most) {
   const size_t maps = maps_.count(d_init_m, most);
-  return reference_is_cheaper(recipe_, maps_.in_view(), maps, maps_.group_shares()) ? maps_.in_view() : maps;
+  const bool is_authored = maps_.has_area_lights() || maps_.group_shares();
+  return reference_is_cheaper(recipe_, maps_.in_view(), maps, is_authored) ? maps_.in_view() : maps;
 }
 
 FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights) {
@@ -99,6 +100,7 @@ FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, 
   FrameStats stats;
   stats.lights = lights;
   stats.lights_in_view = plan.list.lights_in_view;
+  stats.shadowless_in_view = plan.list.shadowless.size();
   stats.light_clusters = plan.list.maps.size();
   stats.centers = centers_of_pack_lights(plan.list, lights);
   stats.reference_path = plan.recipe.select != settings.recipe.select;
@@ -110,8 +112,8 @@ FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, 
     stats.shadow_pool_bytes = std::max(stats.shadow_pool_bytes, held);
     stats.visibility_bytes += round.visibility_bytes;
     stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, round.visibility_bytes);
+    stats.shadow_rounds += round.map_count > 0;
   }
-  stats.shadow_rounds = plan.rounds.size();
   return stats;
 }
 

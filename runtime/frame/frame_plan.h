@@ -7,6 +7,7 @@
 #include "frame/render_settings.h"
 #include "frame/rounds.h"
 #include "lights/light_list.h"
+#include "lights/map_counter.h"
 #include "scene/bounds.h"
 
 namespace chandelier {

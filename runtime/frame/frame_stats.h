@@ -21,8 +21,9 @@ struct FrameStats {
   float exposure_ev = 0.0f;  // as used
   uint64_t lights = 0;
   uint64_t lights_in_view = 0;
-  uint64_t light_clusters = 0;  // equals lights_in_view where lights are not clustered
-  uint64_t reference_path = 0;  // 1: clusters were asked for, but are nearly as many as lights (LightCluster §5.4)
+  uint64_t shadowless_in_view = 0;  // of them, those that throw no shadow
+  uint64_t light_clusters = 0;      // equals the number of the others where lights are not clustered
+  uint64_t reference_path = 0;      // 1: clusters were asked for, but are nearly as many as lights (LightCluster §5.4)
   uint64_t shadow_maps = 0;
   uint64_t shadow_views = 0;
   uint64_t shadow_triangles = 0;
@@ -32,7 +33,7 @@ struct FrameStats {
   uint64_t shadow_rounds = 0;          // how often the pool was filled
   uint64_t visibility_bytes = 0;       // that all visibility textures of the frame need together
   uint64_t visibility_pool_bytes = 0;  // of them, held at a time
-  std::vector<uint32_t> centers;       // for each light of the pack whose shadow map it took; pack::none: not in view
+  std::vector<uint32_t> centers;       // for each light of the pack whose shadow map it took; pack::none: none
 };
 
 }  // namespace chandelier

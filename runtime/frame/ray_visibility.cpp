@@ -49,17 +49,19 @@ std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const fram
   return points;
 }
 
-void fill_visibility(const LightList& list, const Round& round, std::span<const SurfacePoint> points, uint32_t width,
+void fill_visibility(const FramePlan& plan, const Round& round, std::span<const SurfacePoint> points, uint32_t width,
                      const VisibilitySource& source, std::span<uint8_t> bytes) {
   std::vector<SurfacePoint> in_rect;
   for (uint32_t m = round.first_map; m < round.first_map + round.map_count; ++m) {
-    const frame::ShadowMap& map = list.maps[m];
+    const frame::ShadowMap& map = plan.list.maps[m];
     in_rect.clear();
     for (uint32_t y = map.rect_y; y < map.rect_y + map.rect_height; ++y) {
       const auto row = points.subspan(size_t{y} * width + map.rect_x, map.rect_width);
       in_rect.insert(in_rect.end(), row.begin(), row.end());
     }
-    source({list.lights[map.first_light], in_rect, bytes.subspan(map.first_visibility, visibility_bytes(map))});
+    const float radius_m = map.is_directional ? map.filter_radius_m / plan.recipe.z_far_m : map.filter_radius_m;
+    source({plan.list.lights[map.first_light], radius_m, in_rect,
+            bytes.subspan(map.first_visibility, visibility_bytes(map))});
   }
 }
 

@@ -16,7 +16,7 @@ std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const fram
 
 /// Asks for the visibility of every light of a round; each must have a map of its own. `bytes` holds the round's
 /// textures.
-void fill_visibility(const LightList& list, const Round& round, std::span<const SurfacePoint> points, uint32_t width,
+void fill_visibility(const FramePlan& plan, const Round& round, std::span<const SurfacePoint> points, uint32_t width,
                      const VisibilitySource& source, std::span<uint8_t> bytes);
 
 }  // namespace chandelier

@@ -99,6 +99,11 @@ struct Renderer::Impl {
   FrameStats read_stats(const RenderSettings& settings, const FramePlan& plan);
 };
 
+// As uploaded.
+size_t light_count(const FramePlan& plan) {
+  return plan.list.lights.size() + plan.list.shadowless.size();
+}
+
 FramePlan Renderer::Impl::plan(const RenderSettings& settings) {
   const uint64_t batch_instances = std::max(1u, scene.batch_instance_count);
   return plan_frame(scene.lights, scene.bounds, settings,
@@ -125,7 +130,7 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
     visibility_bytes = std::max(visibility_bytes, round.visibility_bytes);
   }
   if (plan.recipe.lookup == Lookup::tiles)
-    make_tile_lists(device, settings.width, settings.height, plan.list.lights.size(), tiles);
+    make_tile_lists(device, settings.width, settings.height, light_count(plan), tiles);
   if (visibility_bytes > device.limits.maxStorageBufferRange)
     throw gpu::Error("a picture of " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
                      " pixels is too large for visibility textures on this device; use deliver inline");
@@ -153,7 +158,9 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
 
 void Renderer::Impl::record_uploads(VkCommandBuffer cmd, const FramePlan& plan) {
   view.write<frame::ViewConstants>(device, cmd, {&plan.view, 1});
-  lights.write<frame::FrameLight>(device, cmd, plan.list.lights);
+  std::vector<frame::FrameLight> all_lights = plan.list.lights;
+  all_lights.insert(all_lights.end(), plan.list.shadowless.begin(), plan.list.shadowless.end());
+  lights.write<frame::FrameLight>(device, cmd, all_lights);
   maps.write<frame::ShadowMap>(device, cmd, plan.list.maps);
   views.write<frame::ShadowView>(device, cmd, plan.views);
   vkCmdFillBuffer(cmd, counters.handle, 0, VK_WHOLE_SIZE, 0);
@@ -184,7 +191,7 @@ void Renderer::Impl::record_start(VkCommandBuffer cmd, const FramePlan& plan) {
 
   if (plan.recipe.lookup == Lookup::tiles) {
     timers.begin(cmd, "lookup");
-    record_tiles(cmd, tile_pipeline, view.device, lights.device, plan.list.lights.size(), targets, tiles);
+    record_tiles(cmd, tile_pipeline, view.device, lights.device, light_count(plan), targets, tiles);
     timers.end(cmd);
   }
 }
@@ -210,19 +217,20 @@ void Renderer::Impl::record_shadow_maps(VkCommandBuffer cmd, const FramePlan& pl
 
 // Adds the light of a round's lights. Where visibility comes from rays it is in `visibility` already.
 void Renderer::Impl::record_light(VkCommandBuffer cmd, const FramePlan& plan, const Round& round) {
-  const ShadeInput input{.view = view.device,
-                         .lights = lights.device,
-                         .maps = maps.device,
-                         .views = views.device,
-                         .visibility = visibility,
-                         .tiles = tiles,
-                         .first_light = round.first_light,
-                         .light_count = round.light_count};
+  ShadeInput input{.view = view.device,
+                   .lights = lights.device,
+                   .maps = maps.device,
+                   .views = views.device,
+                   .visibility = visibility,
+                   .tiles = tiles,
+                   .first_light = round.first_light,
+                   .light_count = round.light_count};
   if (plan.recipe.deliver == Deliver::textures && plan.recipe.filter != Filter::rays) {
     timers.begin(cmd, "deliver");
     record_visibility(cmd, device, shade, plan.recipe, input, store, targets);
     timers.end(cmd);
   }
+  input.light_count += round.shadowless_count;
   timers.begin(cmd, "shade");
   record_shade(cmd, device, shade, plan.recipe, input, store, targets);
   timers.end(cmd);
@@ -248,7 +256,7 @@ void Renderer::Impl::draw(const RenderSettings& settings, const FramePlan& plan)
   gpu::run_once(device, [&](VkCommandBuffer cmd) {
     record_start(cmd, plan);
     for (uint32_t round = 0; round < plan.rounds.size(); ++round) {
-      record_shadow_maps(cmd, plan, round);
+      if (plan.rounds[round].map_count > 0) record_shadow_maps(cmd, plan, round);
       record_light(cmd, plan, plan.rounds[round]);
     }
     record_end(cmd, settings);
@@ -266,7 +274,7 @@ void Renderer::Impl::draw_by_rays(const RenderSettings& settings, const FramePla
   const std::span<uint8_t> bytes(reinterpret_cast<uint8_t*>(visibility.mapped), visibility.size_bytes);
   for (const Round& round : plan.rounds) {
     const auto start = Clock::now();
-    fill_visibility(plan.list, round, points, settings.width, settings.visibility, bytes);
+    fill_visibility(plan, round, points, settings.width, settings.visibility, bytes);
     timers.add_cpu("filter", ms_since(start));
     gpu::run_once(device, [&](VkCommandBuffer cmd) { record_light(cmd, plan, round); });
   }

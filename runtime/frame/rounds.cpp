@@ -23,6 +23,10 @@ std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& 
     round.visibility_bytes += visibility_bytes(map);
     for (uint32_t v = map.first_view; v < map.first_view + map.view_count; ++v) views[v].layer += 6 * map.cube;
   }
+  if (!list.shadowless.empty()) {
+    if (rounds.empty()) rounds.emplace_back();
+    rounds.back().shadowless_count = static_cast<uint32_t>(list.shadowless.size());
+  }
   return rounds;
 }
 

@@ -15,7 +15,8 @@ struct Round {
   uint32_t first_view;
   uint32_t view_count;
   uint32_t first_light;
-  uint32_t light_count;
+  uint32_t light_count;       // of its maps
+  uint32_t shadowless_count;  // lights that follow them, of no map; in the last round
   uint64_t visibility_bytes;  // of all its maps' visibility textures
 };
 
@@ -29,8 +30,8 @@ struct RoundLimits {
   uint64_t visibility_bytes = UINT64_MAX;
 };
 
-/// Splits the maps into rounds, and gives every map its cube and the place of its visibility texture, and every view
-/// its layer.
+/// Splits the maps into rounds, the last of which has the lights without shadow too, and gives every map its cube and
+/// the place of its visibility texture, and every view its layer.
 std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& views, const RoundLimits& limits);
 
 }  // namespace chandelier

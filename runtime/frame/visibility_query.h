@@ -21,6 +21,7 @@ struct SurfacePoint {
 /// One light and the points that its range may reach. `visibility` has a byte for each point: 255 is fully lit.
 struct VisibilityQuery {
   const frame::FrameLight& light;
+  float radius_m;  // of the sphere that shines; of a directional light, of its disc a metre away
   std::span<const SurfacePoint> points;
   std::span<uint8_t> visibility;
 };

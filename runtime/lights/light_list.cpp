@@ -10,41 +10,10 @@
 #include <unordered_map>
 
 #include "lights/light_clusters.h"
+#include "lights/pack_lights.h"
 
 namespace chandelier {
 namespace {
-
-bool is_directional(const pack::Light& light) {
-  return light.type == pack::LightType::directional;
-}
-
-// LightCluster §3.1.2: bounding spheres against the view frustum.
-std::vector<uint32_t> lights_in_view(std::span<const pack::Light> lights, const Camera& camera, float aspect) {
-  const FrustumPlanes planes = frustum_planes(camera, aspect);
-  std::vector<uint32_t> in_view;
-  for (uint32_t i = 0; i < lights.size(); ++i)
-    if (is_directional(lights[i]) || intersects(planes, lights[i].position_ws, lights[i].range_m)) in_view.push_back(i);
-  return in_view;
-}
-
-std::vector<uint32_t> all_numbers(size_t count) {
-  std::vector<uint32_t> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), 0u);
-  return numbers;
-}
-
-frame::FrameLight frame_light(const pack::Light& light) {
-  // KHR_lights_punctual, spot lights: the cone's falloff as one multiply and add.
-  const bool spot = light.type == pack::LightType::spot;
-  const float scale = spot ? 1.0f / std::max(0.001f, light.inner_cone_cos - light.outer_cone_cos) : 0.0f;
-  return {.position_ws = light.position_ws,
-          .range_m = light.range_m,
-          .direction_ws = light.direction_ws,
-          .type = static_cast<uint32_t>(light.type),
-          .radiant = light.color * light.intensity,
-          .cone_scale = scale,
-          .cone_offset = spot ? -light.outer_cone_cos * scale : 1.0f};
-}
 
 // A light, and the light whose position its shadow map is drawn from.
 struct Member {
@@ -61,35 +30,6 @@ uint32_t index_in(std::span<const uint32_t> ascending, uint32_t number) {
 
 bool by_center(const Member& a, const Member& b) {
   return a.center != b.center ? a.center < b.center : a.light < b.light;
-}
-
-lights::ClusterLight cluster_light(const pack::Light& light) {
-  return {.position_ws = light.position_ws,
-          .range_m = light.range_m,
-          .axis_ws = light.direction_ws,
-          .cone_cos = light.type == pack::LightType::spot ? light.outer_cone_cos : -1.0f,
-          .dynamic = light.dynamic != 0,
-          .unclustered = light.unclustered != 0,
-          .group = light.group,
-          .priority = light.priority};
-}
-
-// A directional light stands z_far away, wherever the receiver is. None ends nearer than another: the brightest is
-// looked at first.
-lights::ClusterLight far_cluster_light(const pack::Light& light, float z_far_m) {
-  lights::ClusterLight far = cluster_light(light);
-  far.position_ws = -z_far_m * light.direction_ws;
-  far.range_m = light.intensity * glm::dot(light.color, glm::vec3(0.2126f, 0.7152f, 0.0722f));
-  return far;
-}
-
-lights::ClusterSettings cluster_settings(const Recipe& recipe, const Camera& camera) {
-  return {.camera_ws = camera.eye_ws,
-          .d_init_m = recipe.d_init_m,
-          .z_far_m = recipe.z_far_m,
-          .scaling = recipe.distance_scaling,
-          .dynamic_lights = recipe.dynamic_lights,
-          .stability = recipe.stability};
 }
 
 // Numbers of the pack as places among `numbers`; a centre that is not among them is none.
@@ -211,7 +151,7 @@ void move_to_held(std::span<const pack::Light> lights, std::span<const uint32_t>
   const auto is_moved = [&](uint32_t light) {
     const uint32_t held = centers[light];
     return held < lights.size() && is_directional(lights[held]) == is_directional(lights[light]) &&
-           held != most.at(light).center;
+           lights[held].shadowless == 0 && held != most.at(light).center;
   };
   std::erase_if(members, [&](const Member& member) {
     return is_moved(member.light) && member.center != most.at(member.light).center;
@@ -251,6 +191,34 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
   return members;
 }
 
+LightList make_list(std::span<const pack::Light> lights, std::vector<Member> members, float z_far_m) {
+  std::sort(members.begin(), members.end(), by_center);
+  LightList list;
+  for (size_t i = 0; i < members.size(); ++i) {
+    const Member& member = members[i];
+    if (i == 0 || members[i - 1].center != member.center) {
+      list.maps.push_back({.center_ws = lights[member.center].position_ws,
+                           .range_m = member.map_range_m,
+                           .filter_radius_m = member.filter_radius_m,
+                           .first_light = static_cast<uint32_t>(i),
+                           .is_directional = is_directional(lights[member.center])});
+      list.map_direction_ws.push_back(lights[member.center].direction_ws);
+    }
+    frame::ShadowMap& map = list.maps.back();
+    const float radius_m = source_radius_m(lights[member.light], z_far_m);
+    map.filter_radius_m = std::max(map.filter_radius_m, radius_m);
+    list.has_area_lights |= radius_m > 0.0f;
+    list.lights.push_back(frame_light(lights[member.light]));
+    list.lights.back().radiant *= member.share;
+    list.lights.back().map = static_cast<uint32_t>(list.maps.size() - 1);
+    ++map.light_count;
+    list.pack_light.push_back(member.light);
+    list.center.push_back(member.center);
+    list.share.push_back(member.share);
+  }
+  return list;
+}
+
 }  // namespace
 
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
@@ -266,7 +234,8 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
   };
   one_each(aids.previous_centers, "previous centres");
   one_each(aids.centers, "centres");
-  const auto in_view = aids.out_of_view ? all_numbers(lights.size()) : lights_in_view(lights, camera, aspect);
+  auto in_view = lights_in_view(lights, camera, aspect, aids.out_of_view);
+  const auto shadowless = take_shadowless(lights, in_view);
   const bool has_limits = recipe.select == Select::error_driven && (recipe.max_maps || recipe.max_rmse);
   std::vector<Member> members = recipe.select == Select::per_light ? one_map_each(lights, in_view)
                                 : has_limits                       ? std::vector<Member>()
@@ -275,27 +244,9 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
     members = members_by_error(lights, in_view, std::move(members), recipe,
                                {camera, aspect, aids.ambient, aids.exposure_ev}, aids.surroundings->by_error());
   if (!aids.centers.empty()) hold_centers(lights, aids.centers, members);
-  std::sort(members.begin(), members.end(), by_center);
-
-  LightList list{.lights_in_view = static_cast<uint32_t>(in_view.size())};
-  for (size_t i = 0; i < members.size(); ++i) {
-    const Member& member = members[i];
-    if (i == 0 || members[i - 1].center != member.center) {
-      list.maps.push_back({.center_ws = lights[member.center].position_ws,
-                           .range_m = member.map_range_m,
-                           .filter_radius_m = member.filter_radius_m,
-                           .first_light = static_cast<uint32_t>(i),
-                           .is_directional = is_directional(lights[member.center])});
-      list.map_direction_ws.push_back(lights[member.center].direction_ws);
-    }
-    list.lights.push_back(frame_light(lights[member.light]));
-    list.lights.back().radiant *= member.share;
-    list.lights.back().map = static_cast<uint32_t>(list.maps.size() - 1);
-    ++list.maps.back().light_count;
-    list.pack_light.push_back(member.light);
-    list.center.push_back(member.center);
-    list.share.push_back(member.share);
-  }
+  LightList list = make_list(lights, std::move(members), recipe.z_far_m);
+  for (const uint32_t i : shadowless) list.shadowless.push_back(frame_light(lights[i]));
+  list.lights_in_view = static_cast<uint32_t>(in_view.size() + shadowless.size());
   return list;
 }
 
@@ -303,35 +254,6 @@ bool group_shares(std::span<const pack::Light> lights, const LightList& list) {
   for (size_t i = 0; i < list.lights.size(); ++i)
     if (list.center[i] != list.pack_light[i] && lights[list.pack_light[i]].group != 0) return true;
   return false;
-}
-
-MapCounter::MapCounter(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
-                       bool out_of_view) {
-  std::vector<lights::ClusterLight> near, far;
-  std::vector<uint64_t> groups;  // of the two kinds
-  for (const uint32_t i : out_of_view ? all_numbers(lights.size()) : lights_in_view(lights, camera, aspect)) {
-    const bool directional = is_directional(lights[i]);
-    (directional ? far : near)
-        .push_back(directional ? far_cluster_light(lights[i], recipe.z_far_m) : cluster_light(lights[i]));
-    if (lights[i].group != 0) groups.push_back(uint64_t{directional} << 32 | lights[i].group);
-  }
-  std::sort(groups.begin(), groups.end());
-  group_shares_ = std::adjacent_find(groups.begin(), groups.end()) != groups.end();
-  in_view_ = near.size() + far.size();
-  lights::ClusterSettings settings = cluster_settings(recipe, camera);
-  counters_.emplace_back(near, settings);
-  settings.scaling = DistanceScaling::none;
-  counters_.emplace_back(far, settings);
-}
-
-size_t MapCounter::count(float d_init_m, size_t most) {
-  size_t maps = 0;
-  for (lights::ClusterCounter& counter : counters_) maps += counter.count(d_init_m, most);
-  return maps;
-}
-
-void MapCounter::stay_within(float d_init_m) {
-  for (lights::ClusterCounter& counter : counters_) counter.stay_within(d_init_m);
 }
 
 std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count) {

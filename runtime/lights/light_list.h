@@ -8,24 +8,27 @@
 #include "frame/camera.h"
 #include "frame/recipe.h"
 #include "frame_schema.h"
-#include "lights/cluster_counter.h"
 #include "lights/light_clusters.h"
 #include "lights/surroundings.h"
 #include "pack_schema.h"
 
 namespace chandelier {
 
-/// The lights that can reach something in view, those of one shadow map after each other, maps in ascending order of
-/// their centre's number in the pack: with one light per map that is the pack's order. Selection by error may give a
-/// light shares of several maps: then it stands in `lights` once for each, as bright as its share.
+/// The lights that can reach something in view and throw a shadow, those of one shadow map after each other, maps in
+/// ascending order of their centre's number in the pack: with one light per map that is the pack's order. Selection by
+/// error may give a light shares of several maps: then it stands in `lights` once for each, as bright as its share.
 struct LightList {
   std::vector<frame::FrameLight> lights;
-  std::vector<frame::ShadowMap> maps;       // cube, first_view and view_count are still open
-  std::vector<glm::vec3> map_direction_ws;  // the way that each map's centre shines: cascades are drawn along it
-  std::vector<uint32_t> pack_light;         // number in the pack, of each of `lights`
-  std::vector<uint32_t> center;             // number in the pack of the light whose map each of `lights` takes
-  std::vector<float> share;                 // how much of the light each of `lights` is; those of one add up to 1
-  uint32_t lights_in_view = 0;              // each counted once
+  std::vector<frame::ShadowMap> maps;         // cube, first_view and view_count are still open
+  std::vector<glm::vec3> map_direction_ws;    // the way that each map's centre shines: cascades are drawn along it
+  std::vector<uint32_t> pack_light;           // number in the pack, of each of `lights`
+  std::vector<uint32_t> center;               // number in the pack of the light whose map each of `lights` takes
+  std::vector<float> share;                   // how much of the light each of `lights` is; those of one add up to 1
+  uint32_t lights_in_view = 0;                // each counted once, those without shadow too
+  std::vector<frame::FrameLight> shadowless;  // in view, of no map: they shine through everything
+  bool has_area_lights = false;               // of `lights`: pack::Light::radius_m is above 0
+
+  uint32_t shadowed_in_view() const { return lights_in_view - static_cast<uint32_t>(shadowless.size()); }
 };
 
 /// What a selection may go on from beside the lights. What the recipe does not ask for may be missing.
@@ -47,25 +50,6 @@ struct SelectAids {
 LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
                         const SelectAids& aids = {});
 
-/// Counts the maps that select_lights() makes of the same, for one d_init after another: in less time than a list
-/// takes. For light clusters without walls, held or previous centres.
-class MapCounter {
- public:
-  MapCounter(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
-             bool out_of_view);
-
-  size_t in_view() const { return in_view_; }  // lights
-  bool group_shares() const { return group_shares_; }
-  /// Any number above `most` where there are more.
-  size_t count(float d_init_m, size_t most);
-  /// No later d_init will be larger, which makes counting faster.
-  void stay_within(float d_init_m);
-
- private:
-  std::vector<lights::ClusterCounter> counters_;  // of directional lights, and of others
-  size_t in_view_ = 0;
-  bool group_shares_ = false;
-};
 /// Is any map of the list shared by lights of a group?
 bool group_shares(std::span<const pack::Light> lights, const LightList& list);
 

@@ -104,19 +104,32 @@ void LightSamples::place_points(const Camera& camera, float aspect, const Sample
   }
 }
 
+// What the light adds to a point that it sees.
+glm::vec3 LightSamples::added_by(const pack::Light& light, uint32_t p, const Camera& camera) const {
+  const Point& point = points_[p];
+  const Incoming in = incoming(light, point.position_ws);
+  const float n_dot_l = glm::dot(point.normal_ws, in.to_light);
+  if (n_dot_l <= 0.0f || luminance(in.illuminance) <= 0.0f) return glm::vec3(0.0f);
+  const glm::vec3 to_eye = glm::normalize(camera.eye_ws - point.position_ws);
+  return in.illuminance * n_dot_l * reflected(scene_.materials[material_[p]], point.normal_ws, to_eye, in.to_light);
+}
+
 void LightSamples::light_points(const Camera& camera) {
   reach_.resize(numbers_.size());
   for (uint32_t i = 0; i < numbers_.size(); ++i) {
     for (uint32_t p = 0; p < points_.size(); ++p) {
-      Point& point = points_[p];
-      const Incoming in = incoming(light(i), point.position_ws);
-      const float n_dot_l = glm::dot(point.normal_ws, in.to_light);
-      if (n_dot_l <= 0.0f || luminance(in.illuminance) <= 0.0f) continue;
-      const glm::vec3 to_eye = glm::normalize(camera.eye_ws - point.position_ws);
-      const glm::vec3 added =
-          in.illuminance * n_dot_l * reflected(scene_.materials[material_[p]], point.normal_ws, to_eye, in.to_light);
+      const glm::vec3 added = added_by(light(i), p, camera);
+      if (luminance(added) <= 0.0f) continue;
       reach_[i].push_back({p, added});
-      if (sees(i, p)) point.reference += added;
+      if (sees(i, p)) points_[p].reference += added;
+    }
+  }
+  for (const pack::Light& shadowless : scene_.pack.lights) {
+    if (shadowless.shadowless == 0) continue;
+    for (uint32_t p = 0; p < points_.size(); ++p) {
+      const glm::vec3 added = added_by(shadowless, p, camera);
+      points_[p].unshadowable += added;
+      points_[p].reference += added;
     }
   }
 }

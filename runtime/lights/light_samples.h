@@ -40,7 +40,7 @@ class LightSamples {
   struct Point {
     glm::vec3 position_ws;   // a little off its surface
     glm::vec3 normal_ws;     // of the triangle, facing the eye
-    glm::vec3 unshadowable;  // radiance that no light brings: emission and ambient
+    glm::vec3 unshadowable;  // radiance that no shadow takes: emission, ambient, and lights that throw none
     glm::vec3 reference;     // radiance with a shadow map for each light
   };
   /// What a light adds to a point that it sees, wherever that is not nothing.
@@ -78,6 +78,7 @@ class LightSamples {
 
   std::optional<rays::Hit> first_seen(const glm::vec3& eye_ws, const glm::vec3& way) const;
   void place_points(const Camera& camera, float aspect, const SampleSettings& settings);
+  glm::vec3 added_by(const pack::Light& light, uint32_t point, const Camera& camera) const;
   void light_points(const Camera& camera);
   void expose(const std::optional<float>& exposure_ev);
 

@@ -29,8 +29,8 @@ void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budg
   const FrameStats& stats = plan.prediction.stats;
   const bool by_error = named.recipe.select == Select::error_driven;
   const std::string how = by_error ? "selection by error" : fmt::format("d-init {:.4g} m", named.recipe.d_init_m);
-  const FrameStats one_each{.shadow_maps = stats.lights_in_view,
-                            .shadow_bytes = stats.lights_in_view * cube_bytes(named.recipe.face_size_px)};
+  const uint64_t shadowed = stats.lights_in_view - stats.shadowless_in_view;
+  const FrameStats one_each{.shadow_maps = shadowed, .shadow_bytes = shadowed * cube_bytes(named.recipe.face_size_px)};
   const bool is_limited = !keeps(one_each, budget);
   if (!plan.keeps_budget)
     fmt::print(stderr, "chandelier-play: warning: {}: no {} keeps the budget; {} shadow maps, {} bytes are left\n",
@@ -46,7 +46,7 @@ void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budg
                           : "no d-init makes less");
   if (!is_limited || !plan.keeps_budget || named.shared_maps->empty()) return;
   fmt::print(stderr, "{}: over budget with a shadow map for each of {} lights: {} makes {}; without their own: {}\n",
-             named.preset, stats.lights_in_view, how, stats.shadow_maps, in_words(*named.shared_maps));
+             named.preset, shadowed, how, stats.shadow_maps, in_words(*named.shared_maps));
 }
 
 }  // namespace

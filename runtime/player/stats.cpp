@@ -14,6 +14,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kCounters{
     Counter{"lights", &FrameStats::lights, false},
     Counter{"lights_in_view", &FrameStats::lights_in_view, false},
+    Counter{"shadowless_in_view", &FrameStats::shadowless_in_view, false},
     Counter{"light_clusters", &FrameStats::light_clusters, false},
     Counter{"reference_path", &FrameStats::reference_path, false},
     Counter{"shadow_maps", &FrameStats::shadow_maps, false},

@@ -20,7 +20,7 @@ extern "C" {
 #endif
 
 /* Changes whenever a struct or what a function does changes. */
-#define CHANDELIER_PREVIEW_ABI 1u
+#define CHANDELIER_PREVIEW_ABI 2u
 #define CHANDELIER_PREVIEW_NONE 0xFFFFFFFFu
 #define CHANDELIER_PREVIEW_MOST_LIGHTS 1048576u
 
@@ -37,7 +37,7 @@ enum ChandelierPreviewType {
 };
 
 /* Bits of a light's flags. */
-enum { CHANDELIER_PREVIEW_DYNAMIC = 1, CHANDELIER_PREVIEW_OWN_MAP = 2 };
+enum { CHANDELIER_PREVIEW_DYNAMIC = 1, CHANDELIER_PREVIEW_OWN_MAP = 2, CHANDELIER_PREVIEW_NO_SHADOW = 4 };
 
 /* One value for each light, the next one `stride_bytes` on; with stride 0 the first is every light's. No alignment is
  * asked for. Where `first` is null, every light has the default. */
@@ -55,6 +55,7 @@ typedef struct ChandelierPreviewLights {
   ChandelierPreviewColumn intensity;      /* float, candela or lux; else 1. A light with 0 is none, as in a bake */
   ChandelierPreviewColumn color;          /* float[3], linear; else white. A black light is none */
   ChandelierPreviewColumn range_m;        /* float; else, and where it is 0, as the baker derives it */
+  ChandelierPreviewColumn radius_m;       /* float; of a directional light the tangent of half its angle; else 0 */
   ChandelierPreviewColumn spot_outer_rad; /* float, half angle up to pi / 2; else 0.7854. Not looked at for others */
   ChandelierPreviewColumn flags;          /* uint8_t; else 0 */
   ChandelierPreviewColumn priority;       /* uint8_t; else 128 */
@@ -99,23 +100,25 @@ typedef struct ChandelierPreviewCluster {
 typedef struct ChandelierPreviewBill {
   uint32_t lights; /* that give light */
   uint32_t lights_in_view;
+  uint32_t shadowless_in_view; /* of them, those that throw no shadow */
   uint32_t shadow_maps;
   uint32_t shadow_views;
+  uint32_t wanted_shadow_maps; /* with the d_init of the settings, whatever the budget */
   uint64_t shadow_bytes;
-  uint64_t wanted_shadow_bytes; /* with the d_init of the settings, whatever the budget */
-  uint32_t wanted_shadow_maps;
+  uint64_t wanted_shadow_bytes;
   uint32_t lights_over_budget;
   float d_init_m;          /* as used: the settings' own where it keeps the budget, else the smallest that does */
   uint32_t reference_path; /* 1: clusters are nearly as many as lights: a hard map per light is drawn */
   uint32_t over_budget;    /* 1: the settings' d_init is */
   uint32_t misses_budget;  /* 1: no d_init keeps it; the largest tried is taken */
+  uint32_t reserved;       /* 0 */
 } ChandelierPreviewBill;
 
 /* The arrays are the caller's, each for as many lights as there are, or null where it is of no interest. */
 typedef struct ChandelierPreviewResult {
   uint32_t struct_bytes;
   uint32_t capacity;                  /* elements in each array */
-  uint32_t* center_of_light;          /* the light whose map it takes; NONE out of view */
+  uint32_t* center_of_light;          /* the light whose map it takes; NONE out of view and without shadow */
   float* range_of_light_m;            /* as used; 0 for directional lights */
   uint8_t* over_budget_of_light;      /* 1: the budget takes the map that it would have to itself */
   ChandelierPreviewCluster* clusters; /* in ascending order of centre */

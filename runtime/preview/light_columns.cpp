@@ -17,7 +17,7 @@ namespace {
 
 constexpr int64_t most_stride = int64_t{1} << 31;
 constexpr float most_coordinate_m = 1e12f;
-constexpr float most_intensity = 1e12f, most_color = 1e6f;  // a pack's limits
+constexpr float most_intensity = 1e12f, most_color = 1e6f, most_radius_m = 1e6f;  // a pack's limits
 constexpr float least_cone_rad = 1e-6f, most_cone_rad = std::numbers::pi_v<float> / 2.0f;
 constexpr uint32_t most_pixels = 65536;
 
@@ -96,6 +96,7 @@ struct Columns {
         intensity(lights.intensity, "intensity", {1.0f}),
         color(lights.color, "color", {1.0f, 1.0f, 1.0f}),
         range_m(lights.range_m, "range_m", {}),
+        radius_m(lights.radius_m, "radius_m", {}),
         spot_outer_rad(lights.spot_outer_rad, "spot_outer_rad", {0.7854f}),
         flags(lights.flags, "flags", {}),
         priority(lights.priority, "priority", {128}),
@@ -105,7 +106,7 @@ struct Columns {
   Column<uint8_t> type;
   Column<float> intensity;
   Column<float, 3> color;
-  Column<float> range_m, spot_outer_rad;
+  Column<float> range_m, radius_m, spot_outer_rad;
   Column<uint8_t> flags, priority;
   Column<int32_t> group;
 };
@@ -153,6 +154,8 @@ Lights read_lights(const ChandelierPreviewLights& lights, float range_threshold_
     light.outer_cone_cos = -1.0f;
     light.dynamic = (columns.flags[i][0] & CHANDELIER_PREVIEW_DYNAMIC) != 0;
     light.unclustered = (columns.flags[i][0] & CHANDELIER_PREVIEW_OWN_MAP) != 0;
+    light.shadowless = (columns.flags[i][0] & CHANDELIER_PREVIEW_NO_SHADOW) != 0;
+    light.radius_m = within(columns.radius_m, i, 0.0f, most_radius_m)[0];
     light.priority = columns.priority[i][0];
     const int32_t group = columns.group[i][0];
     light.group = group < 0 ? 0 : static_cast<uint32_t>(group) + 1;

@@ -79,8 +79,9 @@ void vec3(const Json& value, const std::string& where, float* out) {
 }
 
 constexpr std::string_view type_names[]{"point", "spot", "directional"};
-constexpr std::string_view column_names[]{"position",       "direction", "type",    "intensity", "color", "range_m",
-                                          "spot_outer_rad", "dynamic",   "cluster", "priority",  "group"};
+constexpr std::string_view column_names[]{"position", "direction", "type",           "intensity", "color",
+                                          "range_m",  "radius_m",  "spot_outer_rad", "dynamic",   "cluster",
+                                          "shadow",   "priority",  "group"};
 
 /// Reads the columns of `lights`; each has one value for each light.
 class Columns {
@@ -117,7 +118,7 @@ class Columns {
   }
 
   ChandelierPreviewColumn flags() {
-    if (!json_.contains("dynamic") && !json_.contains("cluster")) return {};
+    if (!json_.contains("dynamic") && !json_.contains("cluster") && !json_.contains("shadow")) return {};
     std::vector<uint8_t>& values = out_.bytes.emplace_back(out_.lights.count);
     const auto set = [&](const char* key, bool when, uint8_t flag) {
       each(key, [&](const Json& value, const std::string& where, uint32_t light) {
@@ -126,6 +127,7 @@ class Columns {
     };
     set("dynamic", true, CHANDELIER_PREVIEW_DYNAMIC);
     set("cluster", false, CHANDELIER_PREVIEW_OWN_MAP);
+    set("shadow", false, CHANDELIER_PREVIEW_NO_SHADOW);
     return {values.data(), 1};
   }
 
@@ -166,6 +168,7 @@ void read_lights(const Json& json, Request& request) {
   lights.intensity = columns.floats("intensity", 1);
   lights.color = columns.floats("color", 3);
   lights.range_m = columns.floats("range_m", 1);
+  lights.radius_m = columns.floats("radius_m", 1);
   lights.spot_outer_rad = columns.floats("spot_outer_rad", 1);
   lights.flags = columns.flags();
   lights.priority = columns.bytes(
@@ -226,6 +229,7 @@ void read_camera(const Json& json, ChandelierPreviewCamera& camera) {
 nlohmann::ordered_json bill_json(const ChandelierPreviewBill& bill) {
   return {{"lights", bill.lights},
           {"lights_in_view", bill.lights_in_view},
+          {"shadowless_in_view", bill.shadowless_in_view},
           {"shadow_maps", bill.shadow_maps},
           {"shadow_views", bill.shadow_views},
           {"shadow_bytes", bill.shadow_bytes},

@@ -25,7 +25,8 @@ constexpr const char* footer = R"(Input, every part optional:
               "color": [[1, 1, 1], [1, 0.8, 0.6]],         linear [white]
               "range_m": [6, null],                        null or 0: as chandelier-bake derives it [all null]
               "spot_outer_rad": [0, 0.6],                  half angle [0.7854]
-              "dynamic": [false, true], "cluster": [true, true], "priority": [128, 200],
+              "radius_m": [0.1, 0],                        lights with one are never drawn hard [0]
+              "dynamic": [false, true], "cluster": [true, true], "shadow": [true, true], "priority": [128, 200],
               "group": [-1, -1]},                          lights of the same number share one map [-1: of none]
    "settings": {"select": "light-clusters", "filter": "pcss", "d_init_m": 0.5, "z_far_m": 30, "distance_scaling": "grow",
                 "dynamic_lights": "cluster", "face_size_px": 512, "reference_share": 0.85, "range_threshold_lx": 0.05,

@@ -83,11 +83,12 @@ ChandelierPreviewBill bill(const Plans& plans, uint32_t lights_over_budget) {
   const FrameStats& stats = plans.budgeted.prediction.stats;
   return {.lights = static_cast<uint32_t>(stats.lights),
           .lights_in_view = static_cast<uint32_t>(stats.lights_in_view),
+          .shadowless_in_view = static_cast<uint32_t>(stats.shadowless_in_view),
           .shadow_maps = static_cast<uint32_t>(stats.shadow_maps),
           .shadow_views = static_cast<uint32_t>(stats.shadow_views),
+          .wanted_shadow_maps = static_cast<uint32_t>(plans.wanted.stats.shadow_maps),
           .shadow_bytes = stats.shadow_bytes,
           .wanted_shadow_bytes = plans.wanted.stats.shadow_bytes,
-          .wanted_shadow_maps = static_cast<uint32_t>(plans.wanted.stats.shadow_maps),
           .lights_over_budget = lights_over_budget,
           .d_init_m = plans.budgeted.recipe.d_init_m,
           .reference_path = static_cast<uint32_t>(stats.reference_path),

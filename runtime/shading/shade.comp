@@ -48,14 +48,16 @@ vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
   vec3 sum = vec3(0.0);
   uint light = next_light(round.first_light);
   if (light < round.light_end) do {
-    ShadowMap map = maps[lights[light].map];
-    uint map_end = map.first_light + map.light_count;
+    uint number = lights[light].map;  // NONE: of this light and all after it
+    uint map_end = number == NONE ? round.light_end : maps[number].first_light + maps[number].light_count;
     vec3 of_map = vec3(0.0);
     do {
       of_map += unshadowed(light, r, s.geometric_normal, p);
       light = next_light(light + 1u);
     } while (light < map_end);
-    if (largest(of_map) > 0.0) sum += delivered_visibility(map, p, s.geometric_normal, axes, pixel) * of_map;
+    if (number != NONE && largest(of_map) > 0.0)
+      of_map *= delivered_visibility(maps[number], p, s.geometric_normal, axes, pixel);
+    sum += of_map;
   } while (light < round.light_end);
   return sum;
 }

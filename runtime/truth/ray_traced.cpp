@@ -23,6 +23,7 @@ namespace {
 
 constexpr std::size_t kPointsAtOnce = 4096;  // of a thread
 constexpr std::size_t kRaysAtOnce = 8;
+constexpr uint32_t kRaysToDisc = 32;  // from a point to a light with a radius
 
 // A triangle's corner as an alpha test needs it. Every part of it changes evenly over the triangle.
 struct AlphaCorner {
@@ -165,7 +166,7 @@ struct Sight {
   float end;
 };
 
-// Nothing where no ray is needed: the light does not reach the point, or shines on its back.
+// To the light's middle. Nothing where no ray is needed: the light does not reach the point, or shines on its back.
 std::optional<Sight> sight(const frame::FrameLight& light, const SurfacePoint& point) {
   // The gap once more along the way: at the seam of two walls, a point of the one may lie behind the other.
   const float gap = gap_m(point);
@@ -184,6 +185,38 @@ std::optional<Sight> sight(const frame::FrameLight& light, const SurfacePoint& p
   return Sight{from, way, gap / length, std::max(0.0f, 1.0f - frame::shadow_near_m / length)};
 }
 
+// Points of a disc, evenly (Vogel 1979), turned by `turn` radians.
+glm::vec2 disc_point(uint32_t i, uint32_t count, float turn) {
+  constexpr float golden_angle = 2.3999632f;
+  const float angle = turn + golden_angle * static_cast<float>(i);
+  const float radius = std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(count));
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+// A sphere is seen as a disc across the way to its middle. Each point looks at other places of it.
+class Disc {
+ public:
+  Disc(const Sight& to_middle, float radius_m, std::size_t point) : to_middle_(to_middle) {
+    const glm::vec3 way = glm::normalize(to_middle.way);
+    across_ =
+        radius_m * glm::normalize(glm::cross(way, std::abs(way.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
+    up_ = glm::cross(way, across_);
+    turn_ = 6.2831853f * glm::fract(0.61803399f * static_cast<float>(point % 65536));
+  }
+
+  Sight sight(uint32_t i) const {
+    const glm::vec2 at = disc_point(i, kRaysToDisc, turn_);
+    Sight to_place = to_middle_;
+    to_place.way += at.x * across_ + at.y * up_;
+    return to_place;
+  }
+
+ private:
+  Sight to_middle_;
+  glm::vec3 across_, up_;
+  float turn_;
+};
+
 // Ways that are looked along together.
 struct Bundle {
   alignas(32) std::array<int, kRaysAtOnce> valid{};
@@ -191,7 +224,8 @@ struct Bundle {
   std::array<std::size_t, kRaysAtOnce> point{};
   std::size_t count = 0;
 
-  void add(const Sight& way, std::size_t number) {
+  void add(const Sight& way, std::size_t number, RTCScene scene, std::span<uint8_t> lit) {
+    if (count == kRaysAtOnce) look(scene, lit);
     const std::size_t i = count++;
     valid[i] = -1;
     point[i] = number;
@@ -201,27 +235,36 @@ struct Bundle {
     rays.time[i] = 0.0f, rays.mask[i] = ~0u, rays.id[i] = 0, rays.flags[i] = 0;
   }
 
-  // Sets what is lit, and empties itself.
-  void look(RTCScene scene, std::span<uint8_t> visibility) {
+  // Counts what is lit, and empties itself.
+  void look(RTCScene scene, std::span<uint8_t> lit) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcOccluded8(valid.data(), scene, &context, &rays);
     for (std::size_t i = 0; i < count; ++i)
-      if (rays.tfar[i] >= 0.0f) visibility[point[i]] = 255;
+      if (rays.tfar[i] >= 0.0f) ++lit[point[i]];
     valid.fill(0);
     count = 0;
   }
 };
 
 void RayScene::answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const {
+  const uint32_t rays = query.radius_m > 0.0f ? kRaysToDisc : 1;
+  const auto lit = query.visibility;  // first how many rays of each point
   Bundle bundle;
   for (std::size_t i = first; i < end; ++i) {
-    query.visibility[i] = 0;
-    if (const auto way = sight(query.light, query.points[i])) bundle.add(*way, i);
-    if (bundle.count == kRaysAtOnce) bundle.look(scene_.get(), query.visibility);
+    lit[i] = 0;
+    const auto to_middle = sight(query.light, query.points[i]);
+    if (!to_middle) continue;
+    if (rays == 1) {
+      bundle.add(*to_middle, i, scene_.get(), lit);
+      continue;
+    }
+    const Disc disc(*to_middle, query.radius_m, i);
+    for (uint32_t ray = 0; ray < rays; ++ray) bundle.add(disc.sight(ray), i, scene_.get(), lit);
   }
-  bundle.look(scene_.get(), query.visibility);
+  bundle.look(scene_.get(), lit);
+  for (std::size_t i = first; i < end; ++i) lit[i] = static_cast<uint8_t>((lit[i] * 255 + rays / 2) / rays);
 }
 
 void RayScene::answer(const VisibilityQuery& query) const {

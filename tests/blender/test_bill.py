@@ -6,7 +6,7 @@ import pytest
 
 from core import bill
 
-PAPER = bill.Bill(lights=80, lights_in_view=80, shadow_maps=26, shadow_views=156, shadow_bytes=26 * 6 * bill.MIB,
+PAPER = bill.Bill(lights=80, lights_in_view=80, shadowless_in_view=0, shadow_maps=26, shadow_views=156, shadow_bytes=26 * 6 * bill.MIB,
                   wanted_shadow_bytes=26 * 6 * bill.MIB, wanted_shadow_maps=26, lights_over_budget=0, d_init_m=0.5,
                   reference_path=False, over_budget=False, misses_budget=False)
 OVER = replace(PAPER, shadow_maps=10, shadow_bytes=60 * bill.MIB, wanted_shadow_maps=26, lights_over_budget=16, d_init_m=1.25,
@@ -21,6 +21,7 @@ def test_header_says_lights_maps_and_bytes_of_their_budgets():
 
 def test_header_names_lights_out_of_view_and_knows_one_from_many():
     assert bill.header(replace(PAPER, lights_in_view=12)).startswith("80 lights, 12 in view → ")
+    assert bill.header(replace(PAPER, shadowless_in_view=3)).startswith("80 lights, 3 without shadow → ")
     one = replace(PAPER, lights=1, lights_in_view=1, shadow_maps=1, shadow_bytes=3 * bill.MIB // 2)
     assert bill.header(one) == "1 light → 1 shadow map, 1.5 MiB"
     none = replace(PAPER, lights=0, lights_in_view=0, shadow_maps=0, shadow_bytes=0)

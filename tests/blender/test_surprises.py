@@ -12,7 +12,7 @@ def found(*lights):
 @pytest.mark.parametrize("rule, fields", [
     ("area", {"kind": "AREA"}), ("dark", {"power_w": 0}), ("dark", {"power_w": -5}), ("hidden", {"hidden": True}),
     ("scaled", {"scale": (1, 2, 1)}), ("scaled", {"sheared": True}), ("no_range", {"has_range": False}), ("shared", {"users": 3}),
-    ("default_power", {"white": True, "power_w": 1000}), ("inside", {"inside": "Shade"}), ("no_shadow", {"casts_shadow": False}),
+    ("default_power", {"white": True, "power_w": 1000}), ("inside", {"inside": "Shade"}),
     ("nodes", {"own_nodes": True})])
 def test_each_rule_names_its_light_and_no_other_rule_does(rule, fields):
     assert found(Light("good"), Light("bad", **fields)) == [(rule, "bad")]

@@ -218,6 +218,17 @@ TEST_F(BiasTest, PenumbraIsThatOfADiscLight) {
     expect_penumbra(device(), {lamp}, height_m, map.filter_radius_m * height_m / (4.0f - height_m), 0.03f);
 }
 
+// Of its radius, where that is more than what stands for the cluster.
+TEST_F(BiasTest, PenumbraIsThatOfALightWithARadius) {
+  pack::Light lamp = point_light({0, 4, 0}, 30, 20);
+  lamp.radius_m = 1.5f * d_init_m * 0.3f;
+  for (const float height_m : {0.5f, 1.5f})
+    expect_penumbra(device(), {lamp}, height_m, lamp.radius_m * height_m / (4.0f - height_m), 0.03f);
+  pack::Light sun = directional_light({0, -1, 0}, 3);
+  sun.radius_m = 0.02f;  // 2.3 degrees across
+  for (const float height_m : {4.0f, 16.0f}) expect_penumbra(device(), {sun}, height_m, sun.radius_m * height_m, 0.06f);
+}
+
 // Two suns whose directions differ by less than d_init / z_far: the first is the brighter, and the centre.
 TEST_F(BiasTest, PenumbraIsThatOfTwoSuns) {
   const std::vector<pack::Light> suns{directional_light({0, -1, 0}, 3),

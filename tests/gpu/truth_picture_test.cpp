@@ -88,7 +88,7 @@ class TruthPictureTest : public GpuTest {
     if (point.normal_ws == glm::vec3(0.0f)) return false;
     const auto near = around(point, asked_.light, texel_of(light, point.position_ws), 2.0f);
     std::vector<uint8_t> visibility(near.size());
-    asked_.rays({asked_.light, near, visibility});
+    asked_.rays({asked_.light, 0.0f, near, visibility});
     const auto lit = static_cast<std::size_t>(std::count(visibility.begin(), visibility.end(), 255));
     return near.empty() || (lit != 0 && lit != near.size());
   }

@@ -119,6 +119,18 @@ TEST(Light, TakesItsAuthorsWordsFromExtrasTheNodesFirst) {
   EXPECT_EQ(light.range_source, pack::RangeSource::authored);
 }
 
+TEST(Light, HasShadowAndRadiusFromItsExtras) {
+  const auto baked = [](const Json& extras) {
+    return with_light({{"type", "point"}, {"extras", {{"chandelier", extras}}}}).bake().lights.at(0);
+  };
+  const pack::Light plain = baked(Json::object()), authored = baked({{"shadow", false}, {"radius_m", 0.25}});
+  EXPECT_EQ(plain.shadowless, 0u);
+  EXPECT_EQ(plain.radius_m, 0);
+  EXPECT_EQ(authored.shadowless, 1u);
+  EXPECT_EQ(authored.radius_m, 0.25f);
+  EXPECT_EQ(baked({{"shadow", true}}).shadowless, 0u);
+}
+
 TEST(Light, OfGroupsOfTheSameNameHasTheirNumber) {
   Scene scene;
   for (const char* group : {"", "hall", "stage", "", "hall", "hall"}) scene.lights.push_back({.group = group});

@@ -146,7 +146,7 @@ class Library(unittest.TestCase):
 
     def test_loads_as_it_is(self):
         library = ctypes.CDLL(LIBRARY)
-        self.assertEqual(library.chandelier_preview_abi(), 1)
+        self.assertEqual(library.chandelier_preview_abi(), 2)
         self.assertEqual(library.chandelier_preview_select(None, None, None, None, None, 0), 1)
 
 

@@ -43,6 +43,7 @@ class Scene:
         self.document.json["extensionsUsed"] = ["KHR_lights_punctual"]
         self.lights = self.document.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
         self.rows = []
+        self.has_radii = rng.random() < 0.3
         for number in range(rng.choice((1, 7, 30, 60))):
             self.add_light(f"lamp {number}")
         self.cameras = [self.add_camera(f"eye {number}") for number in range(2)]
@@ -54,7 +55,8 @@ class Scene:
                "intensity": 0.0 if rng.random() < 0.04 else f32(rng.uniform(0.2, 4)),
                "colour": [f32(rng.uniform(0.1, 1)) for _ in range(3)],
                "range_m": f32(rng.uniform(1, 8)) if rng.random() < 0.5 else 0.0,
-               "spot_outer_rad": f32(rng.uniform(0.1, 1.5)), "flags": 0, "priority": 128, "group": -1}
+               "spot_outer_rad": f32(rng.uniform(0.1, 1.5)), "flags": 0, "priority": 128, "group": -1,
+               "radius_m": f32(rng.uniform(0, 0.2)) if self.has_radii else 0.0}
         light = {"type": kind, "name": name, "intensity": row["intensity"], "color": row["colour"]}
         if row["range_m"] and kind != "directional":
             light["range"] = row["range_m"]
@@ -78,6 +80,11 @@ class Scene:
         if rng.random() < 0.1:
             row["flags"] |= clusters.OWN_MAP
             extras["cluster"] = False
+        if rng.random() < 0.1:
+            row["flags"] |= clusters.NO_SHADOW
+            extras["shadow"] = False
+        if row["radius_m"]:
+            extras["radius_m"] = row["radius_m"]
         if rng.random() < 0.3:
             row["priority"] = extras["priority"] = rng.randrange(256)
         if rng.random() < 0.2:
@@ -99,7 +106,7 @@ class Scene:
         return types.SimpleNamespace(
             position=column("position", "f4"), direction=direction, type=column("type", "u1"),
             intensity=column("intensity", "f4"), colour=column("colour", "f4"), range_m=column("range_m", "f4"),
-            spot_outer_rad=column("spot_outer_rad", "f4"), flags=column("flags", "u1"), priority=column("priority", "u1"),
+            radius_m=column("radius_m", "f4"), spot_outer_rad=column("spot_outer_rad", "f4"), flags=column("flags", "u1"), priority=column("priority", "u1"),
             group=column("group", "i4"))
 
     def settings(self):
@@ -144,7 +151,7 @@ class Parity(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.library = clusters.Library(os.environ["CHANDELIER_PREVIEW_LIBRARY"])
         self.program = clusters.Program(os.environ["CHANDELIER_LIGHTS"])
-        self.met = {"shared": 0, "out of view": 0, "over budget": 0, "grouped": 0, "reference path": 0, "dark": 0}
+        self.met = {"shared": 0, "out of view": 0, "over budget": 0, "grouped": 0, "reference path": 0, "dark": 0, "without shadow": 0}
 
     def run_tool(self, name, *arguments):
         done = subprocess.run([os.environ[name], *map(str, arguments)], capture_output=True, text=True, check=False)
@@ -212,12 +219,14 @@ class Parity(unittest.TestCase):
     def compare_bill(self, expected, selection):
         bill, counters = selection.bill, expected["counters"]
         self.assertEqual(
-            (bill.lights, bill.lights_in_view, bill.shadow_maps, bill.shadow_views, bill.shadow_bytes, bill.reference_path),
-            (counters["lights"], counters["lights_in_view"], counters["shadow_maps"], counters["shadow_views"],
+            (bill.lights, bill.lights_in_view, bill.shadowless_in_view, bill.shadow_maps, bill.shadow_views, bill.shadow_bytes, bill.reference_path),
+            (counters["lights"], counters["lights_in_view"], counters["shadowless_in_view"], counters["shadow_maps"], counters["shadow_views"],
              counters["shadow_bytes"], counters["reference_path"] == 1))
         self.assertEqual(bill.d_init_m, expected["recipe"]["settings"]["d_init_m"])
         self.assertEqual(len(selection.clusters), counters["light_clusters"])
-        self.assertEqual(int(selection.clusters["light_count"].sum()), counters["lights_in_view"])
+        self.assertEqual(int(selection.clusters["light_count"].sum()),
+                         counters["lights_in_view"] - counters["shadowless_in_view"])
+        self.met["without shadow"] += counters["shadowless_in_view"]
         self.met["reference path"] += bill.reference_path
 
     def compare_selections(self, one, other, exact=True):

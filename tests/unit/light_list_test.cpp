@@ -93,6 +93,51 @@ TEST(LightListTest, AGroupIsOfDirectionalLightsOrOfOthersAndOfThoseInView) {
   EXPECT_EQ(select_lights(lights, {}, {}, 1.0f).maps.size(), 5u);  // one map per light is what the recipe asks for
 }
 
+TEST(LightListTest, LightsWithoutShadowTakeNoMap) {
+  pack::Light lights[]{light_at({0, 0, -4}, 3), light_at({0, 0, -4.1f}, 2), light_at({0, 0, 90}, 8), sun({0, -1, 0}, 1),
+                       light_at({0, 0, -4.2f}, 1)};
+  lights[0].shadowless = lights[2].shadowless = lights[3].shadowless = 1;
+  lights[0].group = lights[1].group = 1;
+  lights[0].unclustered = 1;
+  for (const Recipe& recipe : {Recipe{}, clustering(0.5f)}) {
+    const LightList list = select_lights(lights, recipe, {}, 1.0f);
+    const bool shared = recipe.select == Select::light_clusters;
+    EXPECT_EQ(list.pack_light, (std::vector<uint32_t>{1, 4}));
+    EXPECT_EQ(list.lights_in_view, 4u);  // 2 is behind the camera
+    EXPECT_EQ(list.shadowed_in_view(), 2u);
+    EXPECT_EQ(list.maps.size(), 2u);  // a group's light shares with nobody else
+    ASSERT_EQ(list.shadowless.size(), 2u);
+    EXPECT_EQ(list.shadowless[0].position_ws, lights[0].position_ws);
+    EXPECT_EQ(list.shadowless[1].type, static_cast<uint32_t>(pack::LightType::directional));
+    for (const frame::FrameLight& light : list.shadowless) EXPECT_EQ(light.map, pack::none);
+    EXPECT_EQ(centers_of_pack_lights(list, 5), (std::vector<uint32_t>{pack::none, 1, pack::none, pack::none, 4}));
+    if (shared) {
+      lights[1].group = 0;
+      EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f).center, (std::vector<uint32_t>{1, 1}));
+      lights[1].group = 1;
+    }
+    const std::vector<uint32_t> held{4, 0, pack::none, pack::none, 4};  // 0 has no map that 1 could take
+    EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, {.centers = held}).center, (std::vector<uint32_t>{1, 4}));
+    EXPECT_EQ(select_lights(lights, recipe, {}, 1.0f, {.out_of_view = true}).shadowless.size(), 3u);
+  }
+}
+
+TEST(LightListTest, AMapsLightIsAsLargeAsTheLargestOfItsLights) {
+  pack::Light lights[]{light_at({0, 0, -4}, 3), light_at({0, 0, -4.1f}, 2), light_at({9, 0, -20}, 1),
+                       sun({0, -1, 0}, 1)};
+  const auto radii = [&](const Recipe& recipe) {
+    std::vector<float> radius_m;
+    for (const frame::ShadowMap& map : select_lights(lights, recipe, {}, 1.0f).maps)
+      radius_m.push_back(map.filter_radius_m);
+    return radius_m;
+  };
+  EXPECT_FALSE(select_lights(lights, {}, {}, 1.0f).has_area_lights);
+  lights[1].radius_m = 0.4f, lights[2].radius_m = 0.01f, lights[3].radius_m = 0.02f;
+  EXPECT_TRUE(select_lights(lights, {}, {}, 1.0f).has_area_lights);
+  EXPECT_EQ(radii({}), (std::vector<float>{0.0f, 0.4f, 0.01f, 0.02f * 30.0f}));
+  EXPECT_EQ(radii(clustering(0.5f)), (std::vector<float>{0.4f, 0.3f * 0.5f, 0.02f * 30.0f}));
+}
+
 // The first of two equals is the centre, unless the other was; numbers are those of the pack, not of what is in view.
 TEST(LightListTest, StabilityClingsToThePreviousFramesCenters) {
   const pack::Light lights[]{light_at({0, 0, 90}, 1), light_at({0, 0, -4}, 2), light_at({0, 0, -4.2f}, 2)};

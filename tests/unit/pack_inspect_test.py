@@ -42,6 +42,8 @@ class PackInspect(unittest.TestCase):
         self.assertEqual(report["cameras"][0]["name"], "eye")
         self.assertEqual([light["dynamic"] for light in report["lights"]], [False, False, True])
         self.assertEqual([light["group"] for light in report["lights"]], [1, 1, 0])
+        self.assertEqual([light["shadowless"] for light in report["lights"]], [False, True, False])
+        self.assertAlmostEqual(report["lights"][1]["radius_m"], 0.1)
         self.assertEqual((report["dynamic_instances"], report["skinned_instances"]), (1, 1))
         self.assertEqual(report["batch_bvh"], {"nodes": 3, "depth": 2})
         self.assertEqual(report["triangle_bvh"], {"nodes": 4, "depth": 2})
@@ -54,7 +56,7 @@ class PackInspect(unittest.TestCase):
         run = inspect(self.path)
         self.assertEqual((run.returncode, run.stderr), (0, ""))
         for part in ("positions                      7      12              84              84  raw", "3 stored, 5 drawn by 3 instances",
-                     "3: 1 point, 1 spot, 1 directional; 1 dynamic, 1 unclustered, 2 in 1 groups",
+                     "3: 1 point, 1 spot, 1 directional; 1 dynamic, 1 unclustered, 1 without shadow, 2 in 1 groups",
                      "3 nodes, 2 deep", "1 x 1 x 2, clip; 2 (100.0 %) occupied; 0 of 4 static triangles (0.0 %) always drawn",
                      "0 (0.0 %) closed", "2 nodes, 1 animations, 1 skins; 1 of 3 instances move, 1 by a skin",
                      "3 channels  wave\n", "instance BVH", "triangle BVH", "1 authored, 1 derived at 0.05 lx", "bricks.png", "eye"):

@@ -97,6 +97,8 @@ void add_lights(Contents& c) {
   spot.bounds_center_ws = {1, 0.5f - 15.8f * 0.5f, -0.125f};  // through the rim of a cone of more than 45°
   spot.bounds_radius_m = 13.6833f;
   spot.voxel = 1;
+  spot.shadowless = 1;
+  spot.radius_m = 0.1f;
   spot.name = add_string(c, "torch");
   Light sun = point;
   sun.type = LightType::directional;

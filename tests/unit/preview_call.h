@@ -33,6 +33,7 @@ struct Record {
   std::array<float, 3> color{1.0f, 1.0f, 1.0f};
   float range_m = 0.0f;
   uint8_t flags = 0;
+  float radius_m = 0.0f;
   float spot_outer_rad = 0.5f;
   uint8_t priority = 128;
   int32_t group = -1;
@@ -53,6 +54,7 @@ struct Call {
               .intensity = column(offsetof(Record, intensity)),
               .color = column(offsetof(Record, color)),
               .range_m = column(offsetof(Record, range_m)),
+              .radius_m = column(offsetof(Record, radius_m)),
               .spot_outer_rad = column(offsetof(Record, spot_outer_rad)),
               .flags = column(offsetof(Record, flags)),
               .priority = column(offsetof(Record, priority)),
@@ -102,6 +104,7 @@ struct Call {
 
 inline std::vector<Record> random_lights(Random& random, uint32_t count) {
   std::vector<Record> records(count);
+  const bool have_radii = random.once_in(3);
   for (Record& record : records) {
     record.position = {random.uniform(-6, 6), random.uniform(-2, 2), random.uniform(-6, 6)};
     record.type = static_cast<uint8_t>(random.once_in(8) ? 2 : random.below(2));
@@ -111,8 +114,9 @@ inline std::vector<Record> random_lights(Random& random, uint32_t count) {
     record.intensity = random.once_in(20) ? 0.0f : random.uniform(0.1f, 3.0f);
     record.color = {random.uniform(0, 1), random.uniform(0.1f, 1), random.uniform(0, 1)};
     record.range_m = random.once_in(2) ? 0.0f : random.uniform(1, 8);
+    record.radius_m = have_radii && random.once_in(3) ? random.uniform(0, 0.2f) : 0.0f;
     record.spot_outer_rad = random.uniform(0.05f, 1.57f);
-    record.flags = static_cast<uint8_t>(random.once_in(4) ? random.below(4) : 0);
+    record.flags = static_cast<uint8_t>(random.once_in(4) ? random.below(8) : 0);
     record.priority = static_cast<uint8_t>(random.once_in(3) ? random.below(256) : 128);
     record.group = random.once_in(5) ? static_cast<int32_t>(random.below(3)) : -1;
   }

@@ -32,6 +32,8 @@ struct Expected {
       light.outer_cone_cos = record.type == 1 ? std::cos(record.spot_outer_rad) : -1.0f;
       light.dynamic = record.flags & 1;
       light.unclustered = record.flags >> 1 & 1;
+      light.shadowless = record.flags >> 2 & 1;
+      light.radius_m = record.radius_m;
       light.priority = record.priority;
       light.group = static_cast<uint32_t>(record.group + 1);
       lights.push_back(light);
@@ -57,6 +59,7 @@ struct Expected {
 void expect_counters(const ChandelierPreviewBill& bill, const FrameStats& stats) {
   EXPECT_EQ(bill.lights, stats.lights);
   EXPECT_EQ(bill.lights_in_view, stats.lights_in_view);
+  EXPECT_EQ(bill.shadowless_in_view, stats.shadowless_in_view);
   EXPECT_EQ(bill.shadow_maps, stats.shadow_maps);
   EXPECT_EQ(bill.shadow_views, stats.shadow_views);
   EXPECT_EQ(bill.shadow_bytes, stats.shadow_bytes);
@@ -99,7 +102,7 @@ TEST(PreviewTest, SelectsWhatAFrameOfTheSameLightsWould) {
       EXPECT_EQ(call.centers[cluster.center], cluster.center);
       members += cluster.light_count;
     }
-    EXPECT_EQ(members, call.result.bill.lights_in_view);
+    EXPECT_EQ(members, call.result.bill.lights_in_view - call.result.bill.shadowless_in_view);
   }
   EXPECT_GT(over_budget, 500u);
   EXPECT_GT(out_of_view, 500u);

@@ -33,9 +33,9 @@ frame::FrameLight sun(const glm::vec3& direction) {
 }
 
 std::vector<uint8_t> ask(const pack::File& pack, const frame::FrameLight& light,
-                         const std::vector<SurfacePoint>& points) {
+                         const std::vector<SurfacePoint>& points, float radius_m = 0.0f) {
   std::vector<uint8_t> visibility(points.size(), 99);
-  ray_traced_visibility(pack.view())({light, points, visibility});
+  ray_traced_visibility(pack.view())({light, radius_m, points, visibility});
   return visibility;
 }
 uint8_t ask(const pack::File& pack, const frame::FrameLight& light, const SurfacePoint& point) {
@@ -226,6 +226,41 @@ TEST(RayTraced, TheFirstCentimetreBeforeALightCastsNothing) {
 TEST(RayTraced, AnEmptySceneIsLit) {
   EXPECT_EQ(ask(Scene().open(), frame_light({0, 2, 0}, 9.0f), {{0, 0, 0}, {0, 1, 0}}), 255);
   EXPECT_TRUE(ask(Scene().open(), sun({0, -1, 0}), std::vector<SurfacePoint>()).empty());
+}
+
+// What part of a disc is above a straight line `x` radii above its middle: a segment of a circle.
+double seen_part(double x) {
+  const double c = std::clamp(x, -1.0, 1.0);
+  return 0.5 - (std::asin(c) + c * std::sqrt(1.0 - c * c)) / 3.14159265358979;
+}
+
+// Half a plane hangs half way between the floor and the light, and ends where x is 0: seen from the floor at x, its
+// edge covers the light up to -x. Of a sun, whose disc is as large as it is far, twice as high above the plane.
+void expect_penumbra(const frame::FrameLight& light, double radius_m, double height_m, double edge_per_x) {
+  Scene scene;
+  scene.add(quad({-50, static_cast<float>(height_m), 0}, {50, 0, 0}, {0, 0, -50}),
+            scene.add_material(plain_material(glm::vec3(0.5f))));
+  std::vector<SurfacePoint> points;
+  for (int i = -300; i <= 300; ++i)
+    points.push_back({{0.0015f * static_cast<float>(i), 0, 0.01f * static_cast<float>(i % 7)}, {0, 1, 0}});
+  const std::vector<uint8_t> found = ask(scene.open(), light, points, static_cast<float>(radius_m));
+  double worst = 0, sum = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double off = found[i] / 255.0 - seen_part(-points[i].position_ws.x * edge_per_x / radius_m);
+    worst = std::max(worst, std::abs(off));
+    sum += off;
+  }
+  EXPECT_LT(worst, 0.12);  // of 32 rays each, evenly over the disc
+  EXPECT_NEAR(sum / static_cast<double>(points.size()), 0.0, 0.005);
+}
+
+TEST(RayTraced, PenumbraIsThatOfALightWithARadius) {
+  expect_penumbra(frame_light({0, 4, 0}, 30), 0.2, 2.0, 1.0);
+  expect_penumbra(frame_light({0, 4, 0}, 30), 0.1, 3.0, 1.0 / 3.0);
+}
+
+TEST(RayTraced, PenumbraOfASunIsThatOfItsDisc) {
+  expect_penumbra(sun({0, -1, 0}), 0.05, 4.0, 0.25);
 }
 
 }  // namespace

@@ -56,6 +56,23 @@ void expect_sound(const Planned& planned, uint32_t cubes, uint64_t max_views) {
   EXPECT_EQ(view, planned.views.size());
 }
 
+TEST(RoundsTest, LightsWithoutShadowAreShadedInTheLast) {
+  LightList list;
+  std::vector<frame::ShadowView> views;
+  list.shadowless.resize(3);
+  auto rounds = plan_rounds(list, views, {.maps = 1});
+  ASSERT_EQ(rounds.size(), 1u);
+  EXPECT_EQ(rounds[0].map_count, 0u);
+  EXPECT_EQ(rounds[0].light_count, 0u);
+  EXPECT_EQ(rounds[0].shadowless_count, 3u);
+  for (uint32_t i = 0; i < 2; ++i) list.maps.push_back({.first_light = i, .light_count = 1});
+  rounds = plan_rounds(list, views, {.maps = 1});
+  ASSERT_EQ(rounds.size(), 2u);
+  EXPECT_EQ(rounds[0].shadowless_count, 0u);
+  EXPECT_EQ(rounds[1].first_light + rounds[1].light_count, 2u);
+  EXPECT_EQ(rounds[1].shadowless_count, 3u);
+}
+
 // Visibility textures lie one after the other and never exceed the limit, unless one alone does.
 TEST(RoundsTest, VisibilityTexturesStayWithinTheirLimit) {
   LightList list;

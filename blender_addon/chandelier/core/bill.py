@@ -14,11 +14,12 @@ class Bill:
     """chandelier_preview.h: ChandelierPreviewBill."""
     lights: int
     lights_in_view: int
+    shadowless_in_view: int
     shadow_maps: int
     shadow_views: int
+    wanted_shadow_maps: int
     shadow_bytes: int
     wanted_shadow_bytes: int
-    wanted_shadow_maps: int
     lights_over_budget: int
     d_init_m: float
     reference_path: bool
@@ -37,10 +38,12 @@ def _counted(count, what):
 
 
 def header(bill, budget_maps=0, budget_mib=0):
-    """80 lights → 26 shadow maps, 156 MiB of 200; a budget of 0 is none. Lights out of view are named as such."""
+    """80 lights → 26 shadow maps, 156 MiB of 200; a budget of 0 is none. Lights out of view or without shadow are named as such."""
     lights = _counted(bill.lights, "light")
     if bill.lights_in_view != bill.lights:
         lights += f", {bill.lights_in_view} in view"
+    if bill.shadowless_in_view:
+        lights += f", {bill.shadowless_in_view} without shadow"
     maps = _counted(bill.shadow_maps, "shadow map") + (f" of {budget_maps}" if budget_maps else "")
     size = mib(bill.shadow_bytes) + " MiB" + (f" of {budget_mib}" if budget_mib else "")
     return f"{lights} → {maps}, {size}"

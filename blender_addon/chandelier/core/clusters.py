@@ -15,10 +15,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from .bill import MIB, Bill
-from .light_table import DYNAMIC, OWN_MAP
+from .light_table import DYNAMIC, NO_SHADOW, OWN_MAP
 from .photometry import RANGE_THRESHOLD_LX
 
-ABI = 1
+ABI = 2
 NONE = 0xFFFFFFFF
 SELECTS = ("per-light", "light-clusters")
 FILTERS = ("hard", "pcf", "pcss")
@@ -33,8 +33,8 @@ CLUSTER = np.dtype([("center", "<u4"), ("light_count", "<u4"), ("d_min_m", "<f4"
 COLUMNS = (("position", ("position",), np.float32, 3), ("direction", ("direction",), np.float32, 3),
            ("type", ("type",), np.uint8, 1), ("intensity", ("intensity",), np.float32, 1),
            ("color", ("colour", "color"), np.float32, 3), ("range_m", ("range_m",), np.float32, 1),
-           ("spot_outer_rad", ("spot_outer_rad",), np.float32, 1), ("flags", ("flags",), np.uint8, 1),
-           ("priority", ("priority",), np.uint8, 1), ("group", ("group",), np.int32, 1))
+           ("radius_m", ("radius_m",), np.float32, 1), ("spot_outer_rad", ("spot_outer_rad",), np.float32, 1),
+           ("flags", ("flags",), np.uint8, 1), ("priority", ("priority",), np.uint8, 1), ("group", ("group",), np.int32, 1))
 
 
 class PreviewError(Exception):
@@ -70,7 +70,7 @@ class Camera:
 @dataclass
 class Selection:
     """Of every light, in the table's order."""
-    center: np.ndarray  # i4: the light whose map it takes, -1 out of view or where it gives no light
+    center: np.ndarray  # i4: the light whose map it takes, -1 out of view, without shadow, or where it gives no light
     range_m: np.ndarray  # f4: as used, derived where none was given; 0 for directional lights
     over_budget: np.ndarray  # bool: the budget takes the map that it would have to itself
     clusters: np.ndarray  # of CLUSTER, in ascending order of centre
@@ -93,10 +93,10 @@ _Settings = _structure("Settings", ("struct_bytes", _u32), ("select", _u32), ("f
                        ("max_shadow_bytes", _u64))
 _Camera = _structure("Camera", ("struct_bytes", _u32), ("sees_all", _u32), ("eye_ws", _f32 * 3), ("forward_ws", _f32 * 3),
                      ("up_ws", _f32 * 3), ("yfov_rad", _f32), ("znear_m", _f32), ("width_px", _u32), ("height_px", _u32))
-_Bill = _structure("Bill", ("lights", _u32), ("lights_in_view", _u32), ("shadow_maps", _u32), ("shadow_views", _u32),
-                   ("shadow_bytes", _u64), ("wanted_shadow_bytes", _u64), ("wanted_shadow_maps", _u32),
-                   ("lights_over_budget", _u32), ("d_init_m", _f32), ("reference_path", _u32), ("over_budget", _u32),
-                   ("misses_budget", _u32))
+_Bill = _structure("Bill", ("lights", _u32), ("lights_in_view", _u32), ("shadowless_in_view", _u32),
+                   ("shadow_maps", _u32), ("shadow_views", _u32), ("wanted_shadow_maps", _u32), ("shadow_bytes", _u64),
+                   ("wanted_shadow_bytes", _u64), ("lights_over_budget", _u32), ("d_init_m", _f32), ("reference_path", _u32), ("over_budget", _u32),
+                   ("misses_budget", _u32), ("reserved", _u32))
 _Result = _structure("Result", ("struct_bytes", _u32), ("capacity", _u32), ("center_of_light", _pointer),
                      ("range_of_light_m", _pointer), ("over_budget_of_light", _pointer), ("clusters", _pointer),
                      ("cluster_count", _u32), ("reserved", _u32), ("bill", _Bill))
@@ -198,6 +198,7 @@ def _request(table, settings, camera):
     lights.pop("flags", None)
     lights["dynamic"] = ((flags & DYNAMIC) != 0).tolist()
     lights["cluster"] = ((flags & OWN_MAP) == 0).tolist()
+    lights["shadow"] = ((flags & NO_SHADOW) == 0).tolist()
     asked = {field.name: getattr(settings, field.name) for field in fields(Settings)}
     asked["max_shadow_maps"] = asked.pop("budget_maps")
     asked["max_shadow_bytes"] = asked.pop("budget_mib") * MIB

@@ -111,6 +111,8 @@ def differences(table, row, way, matrix, light):
             float(table.intensity[row]), 1e-6)
     compare("power_w", " W", float(np.float32(extras.get("power_w", -1))), float(table.power_w[row]), 0)
     compare("range", " m", float(np.float32(light.get("range", 0))), float(table.range_m[row]), 0)
+    compare("radius", "" if table.type[row] == photometry.DIRECTIONAL else " m", float(np.float32(extras.get("radius_m", 0))),
+            float(table.radius_m[row]), 0)
     for part, name in enumerate(("red", "green", "blue")):
         compare(name, "", light.get("color", (1, 1, 1))[part], float(table.colour[row, part]), 1e-6)
     out += extras_differences(table, row, extras)
@@ -129,9 +131,9 @@ def extras_differences(table, row, extras):
     """The artist's settings. Groups are only numbers in the table, so that a name is there or not."""
     flags = int(table.flags[row])
     meant = {"priority": int(table.priority[row]), "dynamic": bool(flags & light_table.DYNAMIC),
-             "cluster": not flags & light_table.OWN_MAP}
+             "cluster": not flags & light_table.OWN_MAP, "shadow": not flags & light_table.NO_SHADOW}
     written = {"priority": extras.get("priority", 128), "dynamic": extras.get("dynamic", False),
-               "cluster": extras.get("cluster", True)}
+               "cluster": extras.get("cluster", True), "shadow": extras.get("shadow", True)}
     out = [f"{name} is {json.dumps(written[name])} in the file, meant was {json.dumps(meant[name])}"
            for name in meant if written[name] != meant[name]]
     if bool(extras.get("group")) != (table.group[row] != light_table.NO_GROUP):

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import photometry
 
-DYNAMIC, OWN_MAP = 1, 2  # flags
+DYNAMIC, OWN_MAP, NO_SHADOW = 1, 2, 4  # flags
 NO_GROUP = -1
 
 # What a light's data-block says, whatever the number of places it shines from.
@@ -19,7 +19,7 @@ DATA = np.dtype([
     ("intensity", "<f4"),  # candela, or lux of a directional light
     ("colour", "<f4", 3),  # linear, brightest part at most 1
     ("range_m", "<f4"),  # 0: to be derived
-    ("radius_m", "<f4"),
+    ("radius_m", "<f4"),  # of a sun the tangent of half its angle
     ("spot_outer_rad", "<f4"),  # half angle; pi where there is no cone
     ("power_w", "<f4"),
 ])
@@ -83,10 +83,10 @@ def unique(names):
     return out
 
 
-def record(kind, power_w, colour, range_m=0.0, radius_m=0.0, spot_outer_rad=np.pi, dynamic=False, cluster=True, priority=128,
-           group=NO_GROUP):
+def record(kind, power_w, colour, range_m=0.0, radius_m=0.0, spot_outer_rad=np.pi, dynamic=False, cluster=True, shadow=True,
+           priority=128, group=NO_GROUP):
     """A row of DATA. A colour above 1, which glTF forbids, becomes intensity."""
     brightest = max(1.0, *colour)
-    return ((kind, dynamic * DYNAMIC | (not cluster) * OWN_MAP, priority, group,
+    return ((kind, dynamic * DYNAMIC | (not cluster) * OWN_MAP | (not shadow) * NO_SHADOW, priority, group,
              photometry.intensity_of(kind, power_w) * brightest, tuple(part / brightest for part in colour), range_m, radius_m,
              spot_outer_rad, power_w))

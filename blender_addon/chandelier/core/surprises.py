@@ -20,7 +20,6 @@ class Light:
     users: int = 1  # objects that share its data
     scale: tuple = (1, 1, 1)  # in the world
     sheared: bool = False
-    casts_shadow: bool = True
     own_nodes: bool = False  # its surface is more than an emission
     inside: str = ""  # the mesh that it is in
     hidden: bool = False  # in the viewport, but not from renders
@@ -87,8 +86,6 @@ LIGHT_RULES = (
          lambda light: f"is white with {light.power_w:g} W, as Blender made it: was it ever set?"),
     Rule("inside", "Inside a mesh", lambda light: bool(light.inside),
          lambda light: f"is inside {light.inside}, which will keep its light"),
-    Rule("no_shadow", "Without shadow", lambda light: not light.casts_shadow,
-         lambda light: "casts no shadow here, and will in Chandelier"),
     Rule("nodes", "Nodes", lambda light: light.own_nodes,
          lambda light: "has nodes: only its power and colour, and those of an emission node, are exported"),
 )

@@ -42,10 +42,10 @@ class Edit(LightsCase):
     def test_the_other_fields(self):
         self.select(self.one)
         bpy.ops.chandelier.edit_lights(
-            use_power=True, power_by="WATTS", power=5, use_temperature=True, temperature=2000, use_radius=True, radius=0.3,
-            use_dynamic=True, dynamic=True, use_cluster=True, cluster=False, use_group=True, group="bar")
+            use_power=True, power_by="WATTS", power=5, use_temperature=True, temperature=2000, use_radius=True, radius=0.3, use_shadow=True,
+            shadow=False, use_dynamic=True, dynamic=True, use_cluster=True, cluster=False, use_group=True, group="bar")
         data, settings = self.one.data, self.one.data.chandelier
-        self.assertEqual((data.energy, round(data.shadow_soft_size, 5)), (5, 0.3))
+        self.assertEqual((data.energy, round(data.shadow_soft_size, 5), data.use_shadow), (5, 0.3, False))
         self.assertClose(data.color, part("core.photometry").colour_of_temperature(2000))
         self.assertEqual((settings.dynamic, settings.cluster, settings.group), (True, False, "bar"))
         bpy.ops.chandelier.edit_lights(use_range=True, range=0)
@@ -218,7 +218,6 @@ class Surprises(BlenderCase):
         self.good("Area", kind="AREA")
         self.good("No range", use_custom_distance=False)
         self.good("Default", energy=10)
-        self.good("No shadow", use_shadow=False)
         self.good("Hidden").hide_set(True)
         self.good("Scaled").scale = (2, 1, 1)
         shared = self.good("Shared")
@@ -228,7 +227,7 @@ class Surprises(BlenderCase):
         falloff = nodes.node_tree.nodes.new("ShaderNodeLightFalloff")
         nodes.node_tree.links.new(falloff.outputs[0], part("scene_lights").emission_node(nodes).inputs["Strength"])
         self.assertEqual(self.found(), sorted([
-            ("area", "Area"), ("no_range", "No range"), ("default_power", "Default"), ("no_shadow", "No shadow"), ("hidden", "Hidden"),
+            ("area", "Area"), ("no_range", "No range"), ("default_power", "Default"), ("hidden", "Hidden"),
             ("scaled", "Scaled"), ("shared", "Shared"), ("shared", "Shares"), ("nodes", "Nodes")]))
 
     def test_a_scene_in_centimetres(self):

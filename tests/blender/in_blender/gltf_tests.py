@@ -89,26 +89,28 @@ class Written(GltfCase):
         light = self.lamp()
         settings = light.data.chandelier
         settings.priority, settings.dynamic, settings.cluster, settings.group = 200, True, False, "bar"
+        light.data.use_shadow = False
         self.export()
         written = self.lights()["Lamp"]
         self.assertAlmostEqual(written["intensity"], 683 / (4 * math.pi) * light.data.energy, places=6)
         self.assertEqual(written["range"], light.data.cutoff_distance)
         self.assertClose(written["color"], (1, 0.5, 0.25))
         self.assertEqual(written["extras"]["chandelier"], {
-            "power_w": light.data.energy, "range_m": light.data.cutoff_distance, "priority": 200, "dynamic": True, "cluster": False,
-            "group": "bar"})
+            "power_w": light.data.energy, "range_m": light.data.cutoff_distance, "radius_m": light.data.shadow_soft_size, "priority": 200,
+            "dynamic": True, "cluster": False, "shadow": False, "group": "bar"})
 
     def test_defaults_are_left_out(self):
-        self.lamp(use_custom_distance=False)
+        self.lamp(use_custom_distance=False, shadow_soft_size=0)
         self.export()
         written = self.lights()["Lamp"]
         self.assertNotIn("range", written)
         self.assertEqual(written["extras"]["chandelier"], {"power_w": float32(WATTS)})
 
     def test_a_sun_has_lux_and_no_range(self):
-        self.lamp("Sun", "SUN", energy=2)
+        self.lamp("Sun", "SUN", energy=2, angle=math.radians(3))
         self.export()
         self.assertEqual(self.lights()["Sun"]["intensity"], 1366)
+        self.assertAlmostEqual(self.lights()["Sun"]["extras"]["chandelier"]["radius_m"], math.tan(math.radians(1.5)), places=7)
         self.assertNotIn("range", self.lights()["Sun"])
 
     def test_a_colour_above_one_and_nodes(self):
@@ -180,9 +182,9 @@ class Checked(GltfCase):
     settings = {}  # of the light Here
 
     def check_after(self, change):
-        here = self.lamp("Here", location=(1, 2, 3))
+        here = self.lamp("Here", location=(1, 2, 3), shadow_soft_size=0)
         for name, value in self.settings.items():
-            setattr(here.data.chandelier, name, value)
+            setattr(here.data if hasattr(here.data, name) else here.data.chandelier, name, value)
         self.lamp("Spot", "SPOT")
         self.export()
         gltf = self.gltf()
@@ -219,15 +221,18 @@ class Checked(GltfCase):
     def test_lost_settings(self):
         def lose(key):
             return lambda gltf, nodes, lights: lights[0]["extras"]["chandelier"].pop(key)
-        for key, value, says in (("priority", 7, "priority is 128 in the file, meant was 7"), ("group", "bar", "has lost its group"),
-                                 ("dynamic", True, "dynamic is false"), ("cluster", False, "cluster is true")):
+        for name, value, key, says in (
+                ("priority", 7, "priority", "priority is 128 in the file, meant was 7"), ("group", "bar", "group", "has lost its group"),
+                ("dynamic", True, "dynamic", "dynamic is false"), ("cluster", False, "cluster", "cluster is true"),
+                ("use_shadow", False, "shadow", "shadow is true"), ("shadow_soft_size", 0.5, "radius_m", "radius is 0 m")):
             bpy.data.batch_remove([thing for thing in self.scene.objects if thing.type == "LIGHT"])
-            self.settings = {key: value}
+            self.settings = {name: value}
             self.assert_told(lose(key), "Here", says)
 
     def test_settings_nobody_meant(self):
         for extras, says in (({"priority": 7}, "priority is 7"), ({"group": "bar"}, "is in a group"), ({"dynamic": True}, "dynamic"),
-                             ({"cluster": False}, "cluster is false")):
+                             ({"cluster": False}, "cluster is false"), ({"shadow": False}, "shadow is false"),
+                             ({"radius_m": 3}, "radius is 3 m")):
             bpy.data.batch_remove([thing for thing in self.scene.objects if thing.type == "LIGHT"])
             self.assert_told(lambda gltf, nodes, lights: lights[0]["extras"]["chandelier"].update(extras), "Here", says)
 
@@ -266,6 +271,7 @@ class Baked(GltfCase):
                 self.assertEqual((float32(light["range_m"]), light["range_source"]), (float(table.range_m[row]), "authored"), name)
             watts = light["intensity"] / 683 * (1 if light["type"] == "directional" else 4 * math.pi)
             self.assertEqual(float32(light["intensity"]), float(table.intensity[row]), name)
+            self.assertEqual(float32(light["radius_m"]), float(table.radius_m[row]), name)
             self.assertAlmostEqual(watts, float(table.power_w[row]), delta=1e-6 * watts)
             forward = part("core.gltf_check").to_gltf(table.direction)[row]
             if light["type"] != "point":
@@ -274,16 +280,17 @@ class Baked(GltfCase):
                 self.assertAlmostEqual(math.acos(light["outer_cone_cos"]), float(table.spot_outer_rad[row]), places=5)
 
     def test_settings_survive(self):
-        settings = self.lamp().data.chandelier
-        settings.priority, settings.dynamic, settings.cluster = 9, True, False
+        data = self.lamp(use_shadow=False).data
+        data.chandelier.priority, data.chandelier.dynamic, data.chandelier.cluster = 9, True, False
         for i in range(2):
             self.lamp(f"Of group {i}", location=(i, 2, 0)).data.chandelier.group = "bar"
         self.lamp("Other", location=(1, 0, 0))
         self.export()
         baked = self.baked()
         (lamp,), (other,) = baked["Lamp"], baked["Other"]
-        self.assertEqual((lamp["priority"], lamp["dynamic"], lamp["unclustered"]), (9, True, True))
-        self.assertEqual((other["priority"], other["dynamic"], other["unclustered"]), (128, False, False))
+        kept = ("priority", "dynamic", "unclustered", "shadowless")
+        self.assertEqual([lamp[name] for name in kept], [9, True, True, True])
+        self.assertEqual([other[name] for name in kept], [128, False, False, False])
         groups = [baked[f"Of group {i}"][0]["group"] for i in range(2)]
         self.assertEqual(groups[0], groups[1])
         self.assertNotEqual(groups[0], other["group"])

@@ -77,6 +77,9 @@ class Preview(BlenderCase):
         self.assertEqual(self.update().bill.shadow_maps, 2)
         lamps[1].data.chandelier.group = lamps[2].data.chandelier.group = "pair"
         self.assertEqual(self.update().bill.shadow_maps, 3)
+        lamps[5].data.use_shadow = False
+        bill = self.update().bill
+        self.assertEqual((bill.shadow_maps, bill.shadowless_in_view, bill.lights_in_view), (2, 1, 8))
 
     def test_collection_instances_count(self):
         collection = bpy.data.collections.new("Chandelier")

@@ -24,7 +24,7 @@ class Read(BlenderCase):
         spot = self.add_light("Spot", "SPOT", (1, 2, 3), energy=20, spot_size=math.radians(80))
         spot.rotation_euler = (math.radians(90), 0, 0)
         spot.data.chandelier.priority, spot.data.chandelier.cluster = 9, False
-        self.add_light("Sun", "SUN", energy=3, use_custom_distance=True, cutoff_distance=5)
+        self.add_light("Sun", "SUN", energy=3, angle=math.radians(2), use_custom_distance=True, cutoff_distance=5)
         self.add_light("Area", "AREA", energy=50)
         self.add_light("Dark", energy=0)
         table = self.table()
@@ -32,12 +32,23 @@ class Read(BlenderCase):
         self.assertEqual(table.type.tolist(), [photometry.POINT, photometry.SPOT, photometry.DIRECTIONAL])
         self.assertClose(table.intensity, (543.514, 1087.03, 2049), 0.01)
         self.assertClose(table.range_m, (4, 0, 0))
-        self.assertClose(table.radius_m, (0.125, spot.data.shadow_soft_size, 0))
+        self.assertClose(table.radius_m, (0.125, spot.data.shadow_soft_size, math.tan(math.radians(1))))
         self.assertClose(table.colour[0], (1, 0.5, 0))
         self.assertClose(table.position[1], (1, 2, 3))
         self.assertClose(table.direction[1], (0, 1, 0))  # turned up from straight down
         self.assertAlmostEqual(table.spot_outer_rad[1], math.radians(40), places=5)
         self.assertEqual((table.priority[1], table.flags[1]), (9, part("core.light_table").OWN_MAP))
+
+    def test_shadow_is_off_where_either_renderer_has_it_off(self):
+        self.add_light("On")
+        self.add_light("Off", use_shadow=False)
+        cycles = self.add_light("Off in Cycles").data.cycles
+        has_switch = hasattr(cycles, "cast_shadow")  # from some version on there is one for both
+        if has_switch:
+            cycles.cast_shadow = False
+        table = self.table()
+        off = {name: bool(table.flags[table.names.index(name)] & part("core.light_table").NO_SHADOW) for name in table.names}
+        self.assertEqual(off, {"On": False, "Off": True, "Off in Cycles": has_switch})
 
     def test_groups_are_numbers(self):
         for name, group in (("A", "bar"), ("B", ""), ("C", "hall"), ("D", "bar")):

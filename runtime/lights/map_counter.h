@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many maps the select stage would make.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "frame/camera.h"
+#include "frame/recipe.h"
+#include "lights/cluster_counter.h"
+#include "pack_schema.h"
+
+namespace chandelier {
+
+/// Counts the maps that select_lights() makes of the same, for one d_init after another: in less time than a list
+/// takes. For light clusters without walls, held or previous centres.
+class MapCounter {
+ public:
+  MapCounter(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
+             bool out_of_view);
+
+  size_t in_view() const { return in_view_; }  // lights that throw a shadow
+  bool group_shares() const { return group_shares_; }
+  bool has_area_lights() const { return has_area_lights_; }
+  /// Any number above `most` where there are more.
+  size_t count(float d_init_m, size_t most);
+  /// No later d_init will be larger, which makes counting faster.
+  void stay_within(float d_init_m);
+
+ private:
+  std::vector<lights::ClusterCounter> counters_;  // of directional lights, and of others
+  size_t in_view_ = 0;
+  bool group_shares_ = false;
+  bool has_area_lights_ = false;
+};
+
+}  // namespace chandelier
