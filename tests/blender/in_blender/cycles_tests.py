@@ -2,7 +2,7 @@
 """Truth: a Cornell box with 32 point lights, exported from Blender, baked and played, against Cycles.
 
 CHANDELIER_CYCLES_REPORT names a folder for the pictures. Cycles renders each lamp by itself, at the middle of each pixel: with
-point lamps of no size there is no noise then, and the sum of all is what it converges to."""
+point lamps of no size there is no noise then, and the sum of all is what it converges to; those with a radius take samples."""
 
 import json
 import math
@@ -88,18 +88,18 @@ class Cornell(BlenderCase):
             diffuse.inputs["Color"].default_value = nodes["Principled BSDF"].inputs["Base Color"].default_value
             links.new(diffuse.outputs["BSDF"], nodes["Material Output"].inputs["Surface"])
 
-    def ours(self, *options):
+    def ours(self, *options, preset="reference"):
         pack = self.compare.bake_now(bpy.context, self.folder)
-        return self.compare.chandelier_picture(self.scene, pack, self.folder / "ours.pfm", SIZE, "reference", "--face-size",
-                                               "1024", *options)
+        return self.compare.chandelier_picture(self.scene, pack, self.folder / "ours.pfm", SIZE, preset, "--face-size", "1024",
+                                               "--shade", "lambert", *options)
 
-    def converged(self):
+    def converged(self, samples=1):
         for lamp in self.lamps:
             lamp.hide_render = True
         total = np.zeros((SIZE[1], SIZE[0], 3), np.float64)
         for lamp in self.lamps:
             lamp.hide_render = False
-            total += self.compare.cycles_picture(self.scene, self.folder / "one.exr", 1, SIZE, **AT_PIXEL_CENTERS)
+            total += self.compare.cycles_picture(self.scene, self.folder / "one.exr", samples, SIZE, **AT_PIXEL_CENTERS)
             lamp.hide_render = True
         for lamp in self.lamps:
             lamp.hide_render = False
@@ -119,7 +119,7 @@ class Cornell(BlenderCase):
         return error
 
     def test_radiance_and_shadows_are_those_of_cycles(self):
-        ours = self.ours("--shade", "lambert")
+        ours = self.ours()
         self.make_lambertian()
         cycles = self.converged()
         self.assertGreater(cycles.mean(), 0)
@@ -128,8 +128,23 @@ class Cornell(BlenderCase):
         self.assertLess(error.mean_absolute, 0.02)
         self.assertLess(error.apart, 0.03)  # along shadows' edges
 
+    def test_radius_and_shadow_are_those_of_cycles(self):
+        bpy.data.batch_remove(self.lamps[8:])
+        del self.lamps[8:]
+        for lamp in self.lamps:
+            lamp.data.shadow_soft_size = 0.1
+        self.lamps[0].data.use_shadow = False
+        pictures = {"soft_truth": self.ours(preset="truth"), "soft_pcss": self.ours("--filter", "pcss")}
+        self.make_lambertian()
+        cycles = self.converged(samples=64)
+        for name, picture in pictures.items():
+            error = self.report(name, cycles, picture)
+            self.assertLess(abs(error.mean), 0.02)
+            self.assertLess(error.mean_absolute, 0.035)
+            self.assertLess(error.apart, 0.05)
+
     def test_a_light_that_is_lost_is_found_out(self):
-        ours = self.ours("--shade", "lambert")
+        ours = self.ours()
         self.make_lambertian()
         self.lamps.pop().hide_render = True
         error = self.report("without_a_lamp", self.converged(), ours)
