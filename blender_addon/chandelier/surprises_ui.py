@@ -6,7 +6,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 from mathutils import Matrix, Vector
 
-from . import edit, light_list, scene_lights
+from . import edit, light_list, motion, scene_lights
 from .core import photometry, surprises
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
@@ -50,7 +50,7 @@ def record_of(meshes, light, matrix, users, hidden):
         sheared=bool(abs(unit @ unit.T - np.eye(3)).max() > 1e-3),
         own_nodes=data.use_nodes and (leaves is None or any(socket.is_linked for socket in leaves.inputs)),
         inside="" if data.type == "SUN" else meshes.around(matrix.translation),
-        hidden=hidden)
+        hidden=hidden, lost_motion=motion.lost(light), dynamic=data.chandelier.dynamic)
 
 
 class Meshes:
@@ -211,8 +211,19 @@ class CHANDELIER_OT_make_single_user(OfRule, bpy.types.Operator):
                 light.data = light.data.copy()
 
 
+class CHANDELIER_OT_mark_dynamic(OfRule, bpy.types.Operator):
+    """Mark lights as dynamic: whoever plays the pack will move them. For motion in the pack itself, bake it into keyframes of
+    the object (Object > Animation > Bake Action)"""
+    bl_idname = "chandelier.mark_dynamic"
+    bl_label = "Mark as Dynamic"
+
+    def mend(self, context, lights):
+        for data in edit.data_of(lights):
+            data.chandelier.dynamic = True
+
+
 CLASSES = (CHANDELIER_OT_find_surprises, CHANDELIER_OT_select_surprised, CHANDELIER_OT_convert_area,
-           CHANDELIER_OT_unscale_lights, CHANDELIER_OT_set_range, CHANDELIER_OT_make_single_user)
+           CHANDELIER_OT_unscale_lights, CHANDELIER_OT_set_range, CHANDELIER_OT_make_single_user, CHANDELIER_OT_mark_dynamic)
 register_classes, unregister_classes = bpy.utils.register_classes_factory(CLASSES)
 
 

@@ -13,14 +13,14 @@ def found(*lights):
     ("area", {"kind": "AREA"}), ("dark", {"power_w": 0}), ("dark", {"power_w": -5}), ("hidden", {"hidden": True}),
     ("scaled", {"scale": (1, 2, 1)}), ("scaled", {"sheared": True}), ("no_range", {"has_range": False}), ("shared", {"users": 3}),
     ("default_power", {"white": True, "power_w": 1000}), ("inside", {"inside": "Shade"}),
-    ("nodes", {"own_nodes": True})])
+    ("nodes", {"own_nodes": True}), ("lost_motion", {"lost_motion": "moved by a driver"})])
 def test_each_rule_names_its_light_and_no_other_rule_does(rule, fields):
     assert found(Light("good"), Light("bad", **fields)) == [(rule, "bad")]
 
 
 @pytest.mark.parametrize("fields", [
     {}, {"scale": (1.0001, 1, 0.9999)}, {"kind": "SUN", "has_range": False}, {"white": True, "power_w": 37},
-    {"power_w": 1000, "white": False}])
+    {"power_w": 1000, "white": False}, {"lost_motion": "moved by a driver", "dynamic": True}])
 def test_false_alarms(fields):
     assert found(Light("good", **fields)) == []
 

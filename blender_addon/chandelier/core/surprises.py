@@ -23,6 +23,8 @@ class Light:
     own_nodes: bool = False  # its surface is more than an emission
     inside: str = ""  # the mesh that it is in
     hidden: bool = False  # in the viewport, but not from renders
+    lost_motion: str = ""  # how it changes with time, where that is not exported
+    dynamic: bool = False
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,9 @@ LIGHT_RULES = (
          lambda light: f"is white with {light.power_w:g} W, as Blender made it: was it ever set?"),
     Rule("inside", "Inside a mesh", lambda light: bool(light.inside),
          lambda light: f"is inside {light.inside}, which will keep its light"),
+    Rule("lost_motion", "Motion that is not exported", lambda light: bool(light.lost_motion) and not light.dynamic,
+         lambda light: f"is {light.lost_motion}, which is not exported: it stays as it is at this frame, and counts as one that never "
+         "moves", "chandelier.mark_dynamic"),
     Rule("nodes", "Nodes", lambda light: light.own_nodes,
          lambda light: "has nodes: only its power and colour, and those of an emission node, are exported"),
 )
