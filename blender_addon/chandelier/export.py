@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Export through Blender's own glTF exporter, and a look at what it has written."""
 
+import contextlib
 import os
 import pathlib
 
@@ -26,16 +27,27 @@ def export(context, path):
         raise RuntimeError("the add-on 'glTF 2.0 format' is switched off")
     known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
     written = os.path.splitext(path)[0] + ".writing.glb"  # whatever happens, the older file is whole
-    pathlib.Path(written).unlink(missing_ok=True)  # else it would pass for what was written now
+    with writing(path):
+        pathlib.Path(written).write_bytes(b"")  # the exporter takes many words to say why it cannot
+        os.unlink(written)  # else it would pass for what was written now
     try:
         run_exporter(context, path, filepath=written, **{name: value for name, value in WANTED.items() if name in known})
         if not os.path.exists(written):
             raise RuntimeError(f"{path}: the exporter wrote nothing")
         check = gltf_check.check(written, scene_lights.read(context.evaluated_depsgraph_get()))
-        os.replace(written, path)
+        with writing(path):
+            os.replace(written, path)
         return check
     finally:
         pathlib.Path(written).unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def writing(path):
+    try:
+        yield
+    except OSError as error:
+        raise RuntimeError(f"{path}: cannot be written ({error.strerror})") from None
 
 
 def run_exporter(context, path, **options):

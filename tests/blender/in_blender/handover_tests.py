@@ -57,6 +57,23 @@ class Bake(HandoverCase):
         bpy.ops.chandelier.bake()
         self.assertTrue((self.folder / "packs.chandelier").exists())
 
+    def test_a_folder_that_cannot_be_written(self):
+        bpy.ops.chandelier.bake()
+        before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
+        places = [("//hall.blend/packs.chandelier", "Not a directory"), ("//none/packs.chandelier", "No such file or directory")]
+        if pathlib.Path("/sys/kernel").is_dir():  # whose modes bind root too
+            places.append(("/sys/kernel/packs.chandelier", "Permission denied"))
+        for path, says in places:
+            with self.subTest(path):
+                self.scene.chandelier.pack_path = path
+                self.refused("bake", says)
+                self.assertEqual(self.handover.error, f"{bpy.path.abspath(path)}.glb: cannot be written ({says})")
+                self.assertEqual((self.handover.bake, self.handover.done), (None, ""))
+                self.assertEqual({path.name: path.read_bytes() for path in self.folder.iterdir()}, before)
+        self.scene.chandelier.pack_path = ""
+        self.assertEqual(bpy.ops.chandelier.bake(), {"FINISHED"})
+        self.assertEqual(self.handover.error, "")
+
     def test_an_unsaved_scene_goes_to_blenders_temporary_folder(self):
         bpy.ops.wm.read_homefile(use_empty=True)
         bpy.ops.mesh.primitive_plane_add()
@@ -182,7 +199,7 @@ class Play(HandoverCase):
 
     def test_without_a_pack_that_can_be_baked(self):
         self.scene.chandelier.pack_path = "//no/such/folder.chandelier"
-        self.refused("play", "No such file or directory")
+        self.refused("play", "folder.chandelier.glb: cannot be written (No such file or directory)")
 
     def test_without_a_pack_it_bakes_first(self):
         bpy.ops.chandelier.play()
