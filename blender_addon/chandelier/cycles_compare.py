@@ -111,10 +111,11 @@ class CHANDELIER_OT_compare(bpy.types.Operator):
     bl_label = "Compare with Cycles"
     bl_options = {"REGISTER"}
 
-    samples: IntProperty(name="Samples", description="Of Cycles, a pixel", default=128, min=1, soft_max=4096)
+    samples: IntProperty(name="Samples", description="Of Cycles, a pixel", default=128, min=2, soft_max=4096)
     scale: FloatProperty(name="Size", description="Of the render resolution", default=50, min=1, max=100, subtype="PERCENTAGE")
     preset: EnumProperty(name="Preset", default="lightcluster", items=(
         ("lightcluster", "Light Clusters", "As the scene's shadow settings have it"),
+        ("truth", "Rays", "Shadows by rays to each light: what is left is not of shadow maps"),
         ("reference", "Reference", "A hard shadow map for each light")))
 
     @classmethod
@@ -136,12 +137,14 @@ class CHANDELIER_OT_compare(bpy.types.Operator):
         try:
             pack = bake_now(context, folder)
             ours = chandelier_picture(scene, pack, folder / "compared.pfm", size, self.preset, *without(shown, "--preset", "--camera"))
-            cycles = cycles_picture(scene, folder / "compared.exr", self.samples, size)
+            halves = [cycles_picture(scene, folder / "compared.exr", (self.samples + seed) // 2, size, seed=seed) for seed in (0, 1)]
         except (tools.ToolError, RuntimeError, ValueError, OSError) as error:
             self.report({"ERROR"}, str(error).strip())
             return {"CANCELLED"}
+        cycles, noise = picture_error.mean_and_noise(*halves)
         show(picture_error.sheet(cycles, ours))
-        self.report({"INFO"}, f"Against Cycles: {picture_error.error_of(cycles, ours).line()}; see the image '{SHEET}'")
+        error = picture_error.error_of(cycles, ours).line()
+        self.report({"INFO"}, f"Against Cycles: {error}; {100 * noise:.1f} % is Cycles' noise; see the image '{SHEET}'")
         return {"FINISHED"}
 
 

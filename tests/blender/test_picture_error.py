@@ -36,6 +36,15 @@ def test_noise_in_the_dark_is_not():
     assert picture_error.error_of(reference, ours).apart == 0
 
 
+def test_noise_is_what_two_renders_differ_by():
+    random = np.random.default_rng(3)
+    one, other = (picture(height=64, width=64) + random.normal(0, 0.1, (64, 64, 3)).astype(np.float32) for _ in range(2))
+    mean, noise = picture_error.mean_and_noise(one, other)
+    error = picture_error.error_of(picture(height=64, width=64), mean)
+    assert noise == pytest.approx(error.mean_absolute, rel=0.05)
+    assert picture_error.mean_and_noise(one, one)[1] == 0
+
+
 def test_sizes_must_agree():
     with pytest.raises(ValueError, match="6x8 and 6x7"):
         picture_error.error_of(picture(), picture(height=7))

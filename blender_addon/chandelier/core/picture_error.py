@@ -53,6 +53,13 @@ def error_of(reference, ours):
                  float(np.sqrt((difference ** 2).mean())) / mean, float((relative(reference, ours) > APART).mean()))
 
 
+def mean_and_noise(one, other):
+    """Of two renders that differ by their samples alone: their mean, and the mean difference of a pixel that is noise in it,
+    over its brightness."""
+    mean = (one + other) / 2
+    return mean, float(np.abs(one - other).mean(dtype=np.float64)) / 2 / max(float(mean.mean(dtype=np.float64)), 1e-30)
+
+
 def shown(picture, white):
     """sRGB, 0 to 1, with `white` as the brightest."""
     linear = np.clip(picture / white, 0, 1)

@@ -157,6 +157,7 @@ class Cornell(BlenderCase):
         image = bpy.data.images["Chandelier against Cycles"]
         self.assertEqual(tuple(image.size), (3 * 80 + 8, 80))
         self.assertEqual((self.scene.world, self.scene.render.engine), (world, engine))
+        self.assertEqual(bpy.ops.chandelier.compare(samples=2, scale=10, preset="truth"), {"FINISHED"})
 
     def test_without_cycles_it_says_so(self):
         addon_utils.disable("cycles")
