@@ -86,7 +86,7 @@ class GltfCase(BlenderCase):
 
 class Written(GltfCase):
     def test_intensity_range_and_extras(self):
-        light = self.lamp()
+        light = self.lamp(shadow_soft_size=0.25)
         settings = light.data.chandelier
         settings.priority, settings.dynamic, settings.cluster, settings.group = 200, True, False, "bar"
         light.data.use_shadow = False
