@@ -8,7 +8,6 @@ import bpy
 import gpu
 import numpy as np
 from bpy.props import BoolProperty, PointerProperty
-from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
 from .core import shapes
@@ -21,6 +20,7 @@ MOST_LABELS = 200
 TEXT_PX = 12
 CHARACTER_EM = 0.55  # width of a character over the text's size, about
 WHITE = (1, 1, 1, 1)
+NO_LABELS = np.zeros((0, 3), np.float32), [], []
 
 
 class OverlaySettings(bpy.types.PropertyGroup):
@@ -40,7 +40,7 @@ class Overlay:
     """What was last built, and from what."""
 
     def __init__(self):
-        self.handles, self.key, self.batches, self.labels = [], None, [], []
+        self.handles, self.key, self.batches, self.labels = [], None, [], NO_LABELS
 
     def start(self):
         add = bpy.types.SpaceView3D.draw_handler_add
@@ -83,7 +83,7 @@ class Overlay:
         self.batches = [batch_of(LINES, width, each.ends, each.colours) for width, each in drawn if len(each.ends)]
         self.batches += [batch_of(POINTS, 7.0, table.position, colours),
                          batch_of(POINTS, 12.0, table.position[centers], colours[centers])]
-        self.labels = labels_of(table, selection, colours) if settings.labels else []
+        self.labels = labels_of(table, selection, colours) if settings.labels else NO_LABELS
 
     def draw_batches(self, context):
         gpu.state.blend_set("ALPHA")
@@ -108,10 +108,10 @@ class Overlay:
         scale = context.preferences.system.ui_scale
         set_size(TEXT_PX * scale)
         if PREVIEW.selection is not None:
-            for place, text, colour in self.labels:
-                at = location_3d_to_region_2d(context.region, context.region_data, place)
-                if at:
-                    draw_text(text, at.x + 10 * scale, at.y + 6 * scale, colour)
+            places, texts, colours = self.labels
+            seen = shapes.seen_at(places, context.region_data.perspective_matrix, context.region.width, context.region.height)
+            for row, x, y in seen:
+                draw_text(texts[row], x + 10 * scale, y + 6 * scale, colours[row])
         size = 1.3 * TEXT_PX * scale
         set_size(size)
         left, right = (overlapped(context, kind) for kind in ("TOOLS", "UI"))
@@ -132,9 +132,11 @@ def batch_of(shader, width, positions, colours):
 
 
 def labels_of(table, selection, colours):
+    """Places, texts and colours of the largest clusters."""
     shown = selection.clusters[np.argsort(-selection.clusters["light_count"], kind="stable")][:MOST_LABELS]
-    return [(table.position[each["center"]], f"{table.names[each['center']]} ({each['light_count']})", colours[each["center"]])
-            for each in shown]
+    centers = shown["center"].astype(np.int64)
+    texts = [f"{table.names[center]} ({count})" for center, count in zip(centers.tolist(), shown["light_count"].tolist())]
+    return table.position[centers], texts, colours[centers].tolist()
 
 
 def overlapped(context, kind):

@@ -74,3 +74,10 @@ def test_nothing_gives_nothing():
     empty = np.zeros((0, 3), np.float32)
     assert len(shapes.links(empty, np.zeros(0, int), np.zeros((0, 4), np.float32)).ends) == 0
     assert len(shapes.spheres(empty, [], np.zeros((0, 4), np.float32)).ends) == 0
+
+
+def test_places_fall_where_the_view_has_them():
+    places = np.array([(0, 0, -2), (1, 0.5, -2), (0, 0, 2), (5, 0, -2), (0, 0, 0)], np.float32)
+    perspective = np.array(((1, 0, 0, 0), (0, 2, 0, 0), (0, 0, -1, -0.2), (0, 0, -1, 0)))  # along -z, 90 by 53 degrees
+    assert list(shapes.seen_at(places, perspective, 200, 100)) == [(0, 100, 50), (1, 150, 75)]
+    assert list(shapes.seen_at(places[:0], perspective, 200, 100)) == []

@@ -48,6 +48,15 @@ def links(position, center, colours):
     return Lines(np.ascontiguousarray(ends, np.float32), np.repeat(colours[member], 2, axis=0))
 
 
+def seen_at(places, perspective, width, height):
+    """(row, x, y) of each place that falls into a region of so many pixels. `perspective`: rows of the view's matrix."""
+    clip = np.column_stack((places, np.ones(len(places)))) @ np.asarray(perspective, float).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        x, y = ((clip[:, axis] / clip[:, 3] + 1) / 2 * size for axis, size in ((0, width), (1, height)))
+    seen = np.flatnonzero((clip[:, 3] > 0) & (x >= 0) & (x < width) & (y >= 0) & (y < height))
+    return zip(seen.tolist(), x[seen].tolist(), y[seen].tolist())
+
+
 def circle_segments(count):
     """Of each circle of so many spheres: beyond some all together take about the same."""
     return max(LEAST_SEGMENTS, min(CIRCLE_SEGMENTS, CIRCLE_SEGMENTS * MOST_FINE_SPHERES // max(count, 1)))
