@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <utility>
 
 #include "shadows/store/cube_bytes.h"
 
@@ -25,9 +26,11 @@ std::string in_words(const std::vector<SharedMap>& shared) {
   return text;
 }
 
-void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budget) {
+// `asked` is the recipe before.
+void tell(const NamedRecipe& named, const Recipe& asked, const BudgetedPlan& plan, const Budget& budget) {
   const FrameStats& stats = plan.prediction.stats;
   const bool by_error = named.recipe.select == Select::error_driven;
+  const bool had_d_init = budget.d_init_is_least && !by_error;
   const std::string how = by_error ? "selection by error" : fmt::format("d-init {:.4g} m", named.recipe.d_init_m);
   const uint64_t shadowed = stats.lights_in_view - stats.shadowless_in_view;
   const FrameStats one_each{.shadow_maps = shadowed, .shadow_bytes = shadowed * cube_bytes(named.recipe.face_size_px)};
@@ -45,8 +48,11 @@ void tell(const NamedRecipe& named, const BudgetedPlan& plan, const Budget& budg
                : by_error ? "more maps make no less"
                           : "no d-init makes less");
   if (!is_limited || !plan.keeps_budget || named.shared_maps->empty()) return;
-  fmt::print(stderr, "{}: over budget with a shadow map for each of {} lights: {} makes {}; without their own: {}\n",
-             named.preset, shadowed, how, stats.shadow_maps, in_words(*named.shared_maps));
+  if (had_d_init && named.recipe.d_init_m == asked.d_init_m) return;
+  const std::string wanted = had_d_init ? fmt::format("d-init {:.4g} m", asked.d_init_m)
+                                        : fmt::format("a shadow map for each of {} lights", shadowed);
+  fmt::print(stderr, "{}: over budget with {}: {} makes {}; without their own: {}\n", named.preset, wanted, how,
+             stats.shadow_maps, in_words(*named.shared_maps));
 }
 
 }  // namespace
@@ -64,10 +70,11 @@ void apply_budget(const Budget& budget, NamedRecipe& named, RenderSettings& sett
                   const pack::File& pack) {
   if (!budget.is_given() || named.recipe.select == Select::per_light) return;
   const BudgetedPlan plan = keep_budget(predictor, settings, budget);
-  named.recipe = settings.recipe = plan.recipe;
+  const Recipe asked = std::exchange(named.recipe, plan.recipe);
+  settings.recipe = plan.recipe;
   named.shared_maps = shared_maps(pack, plan.prediction.plan.list);
   named.expected_rmse = plan.expected_rmse;
-  tell(named, plan, budget);
+  tell(named, asked, plan, budget);
 }
 
 void apply_budget(Options& options, const NamedCamera& camera, const pack::File& pack) {

@@ -108,7 +108,9 @@ void read_budget(const Typed& typed, Options& options) {
   const std::string_view option = typed.max_shadow_maps    ? "--max-shadow-maps"
                                   : typed.max_shadow_bytes ? "--max-shadow-bytes"
                                                            : "--max-error";
-  if (typed.d_init) throw UsageError(fmt::format("{}: cannot be used with --d-init, whose place it takes", option));
+  options.budget.d_init_is_least = typed.d_init.has_value();
+  if (typed.d_init && typed.max_error)
+    throw UsageError("--max-error: cannot be used with --d-init, whose place it takes");
   if (std::none_of(options.recipes.begin(), options.recipes.end(),
                    [](const NamedRecipe& each) { return each.recipe.select != Select::per_light; }))
     throw UsageError(fmt::format("{}: needs light clusters, such as --preset lightcluster", option));

@@ -183,7 +183,8 @@ void declare_recipe(CLI::App& app, Typed& typed) {
 
 void declare_budget(CLI::App& app, Typed& typed) {
   const std::string group =
-      "Budget (chooses d-init, or is kept by --select error-driven; maps and bytes come before the error)";
+      "Budget (chooses d-init: --d-init where that keeps maps and bytes. Or is kept by --select error-driven. Maps and "
+      "bytes come before the error)";
   app.add_option("--max-shadow-maps", typed.max_shadow_maps, "Most shadow maps of a frame")
       ->type_name("N")
       ->check(number_between(1, 1e9))

@@ -157,9 +157,18 @@ BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const 
   return best;
 }
 
+BudgetedPlan keep_least_d_init(Predictor& predictor, const RenderSettings& settings, const Budget& budget,
+                               const Prediction& wanted) {
+  const bool is_kept = keeps(wanted.stats, budget);
+  if (is_kept || settings.recipe.select != Select::light_clusters)
+    return {.recipe = settings.recipe, .keeps_budget = is_kept, .expected_rmse = {}, .prediction = wanted};
+  return choose_d_init(predictor, settings, budget);
+}
+
 BudgetedPlan keep_budget(Predictor& predictor, const RenderSettings& settings, const Budget& budget) {
-  return settings.recipe.select == Select::error_driven ? keep_by_error(predictor, settings, budget)
-                                                        : choose_d_init(predictor, settings, budget);
+  if (settings.recipe.select == Select::error_driven) return keep_by_error(predictor, settings, budget);
+  if (budget.d_init_is_least) return keep_least_d_init(predictor, settings, budget, predictor.plan(settings));
+  return choose_d_init(predictor, settings, budget);
 }
 
 }  // namespace chandelier

@@ -14,6 +14,7 @@ struct Budget {
   std::optional<uint64_t> max_shadow_maps;
   std::optional<uint64_t> max_shadow_bytes;
   std::optional<float> max_error;  // expected RMSE of the shown picture
+  bool d_init_is_least = false;    // the recipe's, for maps and bytes: see keep_least_d_init()
 
   bool is_given() const { return max_shadow_maps || max_shadow_bytes || max_error; }
 };
@@ -37,8 +38,13 @@ float as_many_maps_up_to(const Recipe& recipe, float d_init_m);
 /// says how it is looked for.
 BudgetedPlan choose_d_init(Predictor& predictor, RenderSettings settings, const Budget& budget);
 
-/// The same for any recipe: error-driven selection needs no d_init, but is told the budget, which it keeps anew in
-/// every view, as far as lights that keep a map of their own allow.
+/// Of maps and bytes: the settings' own d_init, of which `wanted` is the plan, where that keeps them, else
+/// choose_d_init()'s. A recipe without light clusters stays as it is.
+BudgetedPlan keep_least_d_init(Predictor& predictor, const RenderSettings& settings, const Budget& budget,
+                               const Prediction& wanted);
+
+/// What the budget asks for, of any recipe: error-driven selection needs no d_init, but is told the budget, which it
+/// keeps anew in every view, as far as lights that keep a map of their own allow.
 BudgetedPlan keep_budget(Predictor& predictor, const RenderSettings& settings, const Budget& budget);
 
 }  // namespace chandelier

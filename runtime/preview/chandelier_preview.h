@@ -139,9 +139,9 @@ CHANDELIER_PREVIEW_API uint32_t chandelier_preview_abi(void);
 CHANDELIER_PREVIEW_API void chandelier_preview_defaults(ChandelierPreviewSettings* settings);
 
 /* Selects. Where the settings' d_init breaks a budget, the smallest that keeps it is searched for, as chandelier-play
- * does with --max-shadow-maps and --max-shadow-bytes. Where they keep it their d_init stays, but the player given a
- * budget searches all the same: give it the bill's d_init_m instead. `error_text` gets one line without line feed, cut
- * to `error_bytes` and always terminated; it may be null. Any thread may call, any number at a time. */
+ * does with --max-shadow-maps and --max-shadow-bytes beside --d-init; where they keep it their d_init stays.
+ * `error_text` gets one line without line feed, cut to `error_bytes` and always terminated; it may be null. Any thread
+ * may call, any number at a time. */
 CHANDELIER_PREVIEW_API int32_t chandelier_preview_select(const ChandelierPreviewLights* lights,
                                                          const ChandelierPreviewSettings* settings,
                                                          const ChandelierPreviewCamera* camera,

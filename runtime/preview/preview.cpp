@@ -23,13 +23,8 @@ Plans plan(const Lights& lights, const RenderSettings& settings, const Budget& b
   pack.lights = lights.lights;
   Predictor predictor(pack);
   Plans plans{.wanted = predictor.plan(settings)};
-  if (settings.recipe.select == Select::light_clusters && !keeps(plans.wanted.stats, budget)) {
-    plans.over_budget = true;
-    plans.budgeted = choose_d_init(predictor, settings, budget);
-  } else {
-    plans.over_budget = !keeps(plans.wanted.stats, budget);
-    plans.budgeted = {.recipe = settings.recipe, .keeps_budget = !plans.over_budget, .prediction = plans.wanted};
-  }
+  plans.over_budget = !keeps(plans.wanted.stats, budget);
+  plans.budgeted = keep_least_d_init(predictor, settings, budget, plans.wanted);
   return plans;
 }
 

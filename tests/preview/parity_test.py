@@ -114,12 +114,12 @@ class Scene:
         asked = {"distance_scaling": rng.choice(clusters.SCALINGS), "dynamic_lights": rng.choice(clusters.DYNAMIC_LIGHTS),
                  "face_size_px": rng.choice((64, 256, 512)), "z_far_m": f32(rng.uniform(5, 60)),
                  "filter": rng.choice(("pcf", "pcss")), "reference_share": f32(rng.choice((0.5, 0.85, 2))),
-                 "d_init_m": 0.0 if rng.random() < 0.2 else f32(2 ** rng.uniform(-2, 3))}
+                 "d_init_m": 0.0 if rng.random() < 0.4 else f32(2 ** rng.uniform(-2, 3))}
         budget = rng.random()
         if budget < 0.4:
-            asked |= {"d_init_m": 0.0, "budget_maps": rng.randrange(1, 20)}
+            asked |= {"budget_maps": rng.randrange(1, 20)}
         elif budget < 0.6:
-            asked |= {"d_init_m": 0.0, "budget_mib": rng.randrange(2, 60)}
+            asked |= {"budget_mib": rng.randrange(2, 60)}
         return clusters.Settings(**asked)
 
 
@@ -127,12 +127,12 @@ def options(settings):
     """chandelier-play's for the same."""
     out = ["--preset", "lightcluster", "--filter", settings.filter, "--distance-scaling", settings.distance_scaling,
            "--dynamic-lights", settings.dynamic_lights, "--face-size", settings.face_size_px, "--z-far", settings.z_far_m,
-           "--reference-share", settings.reference_share]
+           "--reference-share", settings.reference_share, "--d-init", settings.d_init_m]
     if settings.budget_maps:
-        return out + ["--max-shadow-maps", settings.budget_maps]
+        out += ["--max-shadow-maps", settings.budget_maps]
     if settings.budget_mib:
-        return out + ["--max-shadow-bytes", settings.budget_mib]
-    return out + ["--d-init", settings.d_init_m]
+        out += ["--max-shadow-bytes", settings.budget_mib]
+    return out
 
 
 def in_blenders_frame(table, camera):
@@ -151,7 +151,8 @@ class Parity(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.library = clusters.Library(os.environ["CHANDELIER_PREVIEW_LIBRARY"])
         self.program = clusters.Program(os.environ["CHANDELIER_LIGHTS"])
-        self.met = {"shared": 0, "out of view": 0, "over budget": 0, "grouped": 0, "reference path": 0, "dark": 0, "without shadow": 0}
+        self.met = {"shared": 0, "out of view": 0, "over budget": 0, "grouped": 0, "reference path": 0, "dark": 0, "without shadow": 0,
+                    "budget from 0": 0, "least distance kept": 0, "least distance widened": 0}
 
     def run_tool(self, name, *arguments):
         done = subprocess.run([os.environ[name], *map(str, arguments)], capture_output=True, text=True, check=False)
@@ -186,13 +187,20 @@ class Parity(unittest.TestCase):
         eye = expected["camera"]
         camera = clusters.Camera(eye["eye_ws"], eye["forward_ws"], eye["up_ws"], named["yfov_rad"], named["znear_m"], SIZE)
         by_library = self.library.select(table, settings, camera)
-        self.compare_centers(scene, baked, expected, by_library)
+        self.compare_centers(scene, baked, expected, by_library, settings)
         self.compare_bill(expected, by_library)
+        self.count_budgets(settings, by_library.bill)
         self.compare_selections(by_library, self.program.select(table, settings, camera))
         turned, turned_camera = in_blenders_frame(table, camera)
         self.compare_selections(by_library, self.library.select(turned, settings, turned_camera), exact=False)
 
-    def compare_centers(self, scene, baked, expected, selection):
+    def count_budgets(self, settings, bill):
+        if settings.budget_maps or settings.budget_mib:
+            self.met["budget from 0"] += bill.over_budget and settings.d_init_m == 0
+            self.met["least distance kept"] += bill.d_init_m == settings.d_init_m > 0
+            self.met["least distance widened"] += bill.d_init_m > settings.d_init_m > 0
+
+    def compare_centers(self, scene, baked, expected, selection, settings):
         numbers = {row["name"]: number for number, row in enumerate(scene.rows)}
         number_of = [numbers[light["name"]] for light in baked]
         centers = np.full(len(scene.rows), -1)
@@ -209,7 +217,7 @@ class Parity(unittest.TestCase):
         without = {each["light"] for each in expected["lights_without_own_map"]}
         self.assertLessEqual(lost, without)
         groups = [row["group"] for row in scene.rows]
-        if selection.bill.over_budget:  # from d_init 0, where every light but those of a group has its own
+        if selection.bill.over_budget and settings.d_init_m == 0:  # where every light but those of a group has its own
             self.assertEqual({name for name in without if groups[numbers[name]] < 0}, {n for n in lost if groups[numbers[n]] < 0})
         self.met["over budget"] += len(lost)
         self.met["dark"] += len(scene.rows) - len(baked)

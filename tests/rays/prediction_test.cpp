@@ -153,6 +153,32 @@ TEST(Budget, IsKeptByTheFirstDInitOfAllThatKeepsIt) {
   }
 }
 
+// Where the least d_init breaks a budget, what keeps it is what is found without one.
+TEST(Budget, LeavesTheLeastDInitThatKeepsIt) {
+  uint32_t kept = 0, widened = 0;
+  for (uint32_t seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE(seed);
+    const pack::Contents pack = mixed_lights(seed);
+    Predictor predictor(pack::view_of(pack));
+    RenderSettings settings = mixed_settings(seed);
+    settings.recipe.d_init_m = 0.2f * static_cast<float>(1 + seed % 17);
+    const uint64_t wanted = predictor.plan(settings).stats.shadow_maps;
+    Budget budget{.max_shadow_maps = 1 + seed % 23};
+    const BudgetedPlan from_zero = keep_budget(predictor, settings, budget);
+    budget.d_init_is_least = true;
+    const BudgetedPlan plan = keep_budget(predictor, settings, budget);
+    const bool is_kept = wanted <= *budget.max_shadow_maps;
+    EXPECT_EQ(plan.recipe.d_init_m, is_kept ? settings.recipe.d_init_m : from_zero.recipe.d_init_m);
+    EXPECT_EQ(plan.keeps_budget, is_kept || from_zero.keeps_budget);
+    settings.recipe.d_init_m = plan.recipe.d_init_m;
+    EXPECT_EQ(plan.prediction.stats.shadow_maps, predictor.plan(settings).stats.shadow_maps);
+    kept += is_kept;
+    widened += !is_kept && from_zero.keeps_budget;
+  }
+  EXPECT_GT(kept, 10u);
+  EXPECT_GT(widened, 20u);
+}
+
 TEST(Budget, SaysWhereNoClusterKeepsIt) {
   pack::Contents pack = lights_in_a_box(3, 4);
   for (pack::Light& light : pack.lights) light.range_m = 50;

@@ -70,7 +70,8 @@ TEST(PlayerOptions, ExplicitSettingsOverrideThePreset) {
   const Options options = accepted(
       "scene.chandelier --output a.png --preset lightcluster --filter pcf --cull none --d-init 0.25 --z-far 12 "
       "--distance-scaling "
-      "paper-formula --dynamic-lights own --area-radius spread --stability 0.25 --face-size 128 --shadow-budget 64 --ambient 0.5 --exposure -1.5 --frames 7 --size 64x32");
+      "paper-formula --dynamic-lights own --area-radius spread --stability 0.25 --face-size 128 --shadow-budget 64 "
+      "--ambient 0.5 --exposure -1.5 --frames 7 --size 64x32");
   const Recipe& recipe = options.recipes.at(0).recipe;
   EXPECT_EQ(stage_answer(recipe, "select"), "light-clusters");
   EXPECT_EQ(stage_answer(recipe, "filter"), "pcf");
@@ -215,8 +216,12 @@ TEST(PlayerOptions, BudgetsChooseDInit) {
   EXPECT_EQ(accepted("scene.chandelier --preset lightcluster --max-error 0.03").budget.max_error, 0.03f);
   expect_refused("scene.chandelier --preset lightcluster --max-error 1.5", "--max-error: must be a number from 0 to 1");
   expect_refused("scene.chandelier --max-error 0.1", "--max-error: needs light clusters");
-  expect_refused("scene.chandelier --output a.png --preset lightcluster --d-init 1 --max-shadow-bytes 24",
-                 "--max-shadow-bytes: cannot be used with --d-init");
+  EXPECT_FALSE(options.budget.d_init_is_least);
+  const Options least = accepted("scene.chandelier --preset lightcluster --d-init 1 --max-shadow-bytes 24");
+  EXPECT_TRUE(least.budget.d_init_is_least);
+  EXPECT_EQ(least.recipes.at(0).recipe.d_init_m, 1.0f);
+  expect_refused("scene.chandelier --preset lightcluster --d-init 1 --max-shadow-bytes 24 --max-error 0.1",
+                 "--max-error: cannot be used with --d-init");
   expect_refused("scene.chandelier --output a.png --preset lightcluster --max-shadow-maps 0", "--max-shadow-maps");
 }
 
