@@ -110,7 +110,28 @@ std::uint64_t write_all(TemporaryFile& file, const View& view, Compression compr
 
 // ---- Reading
 
-Mapping map_file(const std::filesystem::path& path) {
+/// Of a file, or what it holds now; MAP_FAILED and errno where that cannot be.
+void* map_bytes(int descriptor, std::size_t size, Hold hold) {
+  if (hold == Hold::mapped) return mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  void* const data = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (data == MAP_FAILED) return data;
+  std::size_t done = 0;
+  while (done < size) {
+    const ssize_t count = read(descriptor, static_cast<std::byte*>(data) + done, size - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count > 0) {
+      done += static_cast<std::size_t>(count);
+      continue;
+    }
+    const int error = count < 0 ? errno : ESTALE;  // 0: it became shorter
+    munmap(data, size);
+    errno = error;
+    return MAP_FAILED;
+  }
+  return data;
+}
+
+Mapping map_file(const std::filesystem::path& path, Hold hold) {
   // Non-blocking, so that a FIFO is refused below instead of waited for.
   const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) fail_system(path, "cannot open", errno);
@@ -118,12 +139,12 @@ Mapping map_file(const std::filesystem::path& path) {
   const int stat_error = fstat(descriptor, &status) == 0 ? 0 : errno;
   const bool regular = stat_error == 0 && S_ISREG(status.st_mode);
   const std::size_t size = regular ? static_cast<std::size_t>(status.st_size) : 0;
-  void* data = size > 0 ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0) : nullptr;
+  void* data = size > 0 ? map_bytes(descriptor, size, hold) : nullptr;
   const int map_error = data == MAP_FAILED ? errno : 0;
   close(descriptor);
   if (stat_error != 0) fail_system(path, "cannot read", stat_error);
   if (!regular) fail(path, S_ISDIR(status.st_mode) ? "not a file (a folder)" : "not a regular file");
-  if (map_error != 0) fail_system(path, "cannot map", map_error);
+  if (map_error != 0) fail_system(path, hold == Hold::mapped ? "cannot map" : "cannot read", map_error);
   Mapping mapping(data, size);
   if (size < sizeof(FileHeader)) fail(path, "too short for a pack (" + std::to_string(size) + " bytes)");
   return mapping;
@@ -306,7 +327,7 @@ Mapping::~Mapping() {
   if (data_) munmap(data_, size_);
 }
 
-File::File(const std::filesystem::path& path, std::size_t most_threads) : file_(map_file(path)) {
+File::File(const std::filesystem::path& path, std::size_t most_threads, Hold hold) : file_(map_file(path, hold)) {
   const std::span<const std::byte> bytes = file_.bytes();
   const FileHeader& header = *reinterpret_cast<const FileHeader*>(bytes.data());
   if (std::string line = header_fault(header, bytes.size()); !line.empty()) fail(path, line);

@@ -51,7 +51,7 @@ class Writer {
   std::future<void> syncing_;  // waits before file_ goes
 };
 
-/// Memory from mmap().
+/// Memory from mmap(), of a file or not.
 class Mapping {
  public:
   Mapping() = default;
@@ -71,11 +71,15 @@ class Mapping {
   std::size_t size_ = 0;
 };
 
-/// A mapped pack. Every offset, count, index, enum and float has been checked when the constructor returns.
+/// A mapped file must not be written to as long as it is used: what is cut off of it ends whoever reads there, and what
+/// changes was not checked. One that is replaced by renaming stays. A copy takes its size in memory.
+enum class Hold { mapped, copied };
+
+/// A pack in memory. Every offset, count, index, enum and float has been checked when the constructor returns.
 class File {
  public:
   /// Checks and decodes big packs in at most `most_threads` threads; 0: as many as there are cores. Throws Error.
-  explicit File(const std::filesystem::path& path, std::size_t most_threads = 0);
+  explicit File(const std::filesystem::path& path, std::size_t most_threads = 0, Hold hold = Hold::mapped);
   File(File&& other) noexcept;
   File& operator=(File&& other) noexcept;
 

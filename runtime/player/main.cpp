@@ -6,17 +6,18 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <utility>
 
-#include "player/budget.h"
-#include "player/camera.h"
 #include "player/compare.h"
 #include "player/headless.h"
 #include "player/image_files.h"
 #include "player/options.h"
 #include "player/path.h"
 #include "player/prediction.h"
+#include "player/scene.h"
 #include "player/truth.h"
 #ifndef CHANDELIER_PORTABLE
+#include "player/live_scene.h"
 #include "player/window.h"
 #endif
 
@@ -42,50 +43,42 @@ int report_validation(const std::vector<std::string>& messages) {
 
 using ValidationLog = std::shared_ptr<const std::vector<std::string>>;
 
-NamedCamera camera_of(const Options& options, const pack::File& pack) {
-  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-  return options.camera ? NamedCamera{"", *options.camera} : choose_camera(pack, options.camera_name, aspect);
-}
-
-ValidationLog draw(const Options& options, const NamedCamera& camera, const pack::File& pack) {
+ValidationLog draw(const Options& asked, std::unique_ptr<const Scene> scene) {
   gpu::DeviceOptions device_options;
-  device_options.device = options.device;
-  device_options.validation = options.validation;
+  device_options.device = asked.device;
+  device_options.validation = asked.validation;
 #ifndef CHANDELIER_PORTABLE
-  std::optional<Window> window;
-  if (options.mode == Mode::window) {
-    window.emplace(options);
-    device_options.instance_extensions = window->instance_extensions();
+  if (asked.mode == Mode::window) {
+    Window window(asked);
+    device_options.instance_extensions = window.instance_extensions();
     device_options.swapchain = true;
+    gpu::Device device(device_options);
+    LiveScene live(asked, std::move(scene), device);
+    window.run(live, device);
+    return device.validation_log();
   }
 #endif
+  const auto& [options, stamp, pack, camera] = *scene;
   gpu::Device device(device_options);
   Renderer renderer(device, pack);
   const VisibilitySource visibility = visibility_for(options.recipes, pack);
   if (options.mode == Mode::headless) run_headless(options, camera, device, renderer, visibility);
   if (options.mode == Mode::compare) run_comparison(options, camera, pack, device, renderer, visibility);
   if (options.mode == Mode::path) run_path(options, device, renderer, visibility);
-#ifndef CHANDELIER_PORTABLE
-  const pack::BakeInfo& info = *pack.view().bake_info;
-  const float scene_size_m = glm::distance(info.bounds_min_ws, info.bounds_max_ws);
-  if (window) window->run(options, camera, scene_size_m, device, renderer, visibility);
-#endif
   return device.validation_log();
 }
 
-int run(Options options) {
-  if (options.mode == Mode::list_devices) return list_devices();
-  if (options.mode == Mode::headless) check_writable(options.output);
-  if (!options.stats.empty()) check_writable(options.stats);
-  const pack::File pack(options.pack);
-  const NamedCamera camera = camera_of(options, pack);
-  if (options.mode != Mode::compare) apply_budget(options, camera, pack);
-  if (options.mode == Mode::predict) {
-    run_prediction(options, camera, pack);
+int run(const Options& asked) {
+  if (asked.mode == Mode::list_devices) return list_devices();
+  if (asked.mode == Mode::headless) check_writable(asked.output);
+  if (!asked.stats.empty()) check_writable(asked.stats);
+  auto scene = std::make_unique<const Scene>(asked);
+  if (asked.mode == Mode::predict) {
+    run_prediction(scene->options, scene->camera, scene->pack);
     return 0;
   }
-  const ValidationLog log = draw(options, camera, pack);
-  return options.validation ? report_validation(*log) : 0;
+  const ValidationLog log = draw(asked, std::move(scene));
+  return asked.validation ? report_validation(*log) : 0;
 }
 
 }  // namespace

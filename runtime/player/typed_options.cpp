@@ -43,6 +43,8 @@ std::string footer() {
   std::string text = "Presets:\n";
   for (const Preset& preset : presets()) text += fmt::format("  {:<18}{}\n", preset.name, preset.description);
   text +=
+      "\nA window shows whatever pack takes its file's place, from where one has flown to. What cannot be shown is\n"
+      "told, and the older one stays.\n"
       "\nExamples:\n"
       "  chandelier-play scene.chandelier                       fly through it in a window\n"
       "  chandelier-play scene.chandelier --output frame.png    one picture, no display needed\n"

@@ -35,6 +35,19 @@ VkExtent2D framebuffer_size(GLFWwindow* window) {
   return {static_cast<uint32_t>(std::max(width, 0)), static_cast<uint32_t>(std::max(height, 0))};
 }
 
+float speed_through(const pack::File& pack) {
+  const pack::BakeInfo& info = *pack.view().bake_info;
+  return std::clamp(glm::distance(info.bounds_min_ws, info.bounds_max_ws) / kCrossing_s, kSlowest_m_per_s,
+                    kFastest_m_per_s);
+}
+
+std::string title(const LiveScene& live, const FrameStats& stats) {
+  const Options& options = live.scene().options;
+  return fmt::format("{}{}: {}, {:.1f} ms, {} lights, {} shadow maps", options.pack.filename().string(),
+                     live.is_older() ? " (an older one: it cannot be read now)" : "", options.recipes.front().preset,
+                     stats.frame_ms, stats.lights, stats.shadow_maps);
+}
+
 }  // namespace
 
 struct Window::Impl {
@@ -116,22 +129,19 @@ std::vector<const char*> Window::instance_extensions() const {
   return {names, names + count};
 }
 
-void Window::run(const Options& options, const NamedCamera& camera, float scene_size_m, const gpu::Device& device,
-                 Renderer& renderer, const VisibilitySource& visibility) {
+void Window::run(LiveScene& live, const gpu::Device& device) {
   GLFWwindow* const window = impl_->window;
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   gpu::check(glfwCreateWindowSurface(device.instance, window, nullptr, &surface), "glfwCreateWindowSurface");
   Swapchain swapchain(device, surface);
-  impl_->speed_m_per_s = std::clamp(scene_size_m / kCrossing_s, kSlowest_m_per_s, kFastest_m_per_s);
+  impl_->speed_m_per_s = speed_through(live.scene().pack);
   std::signal(SIGINT, [](int) { asked_to_end = 1; });
   std::signal(SIGTERM, [](int) { asked_to_end = 1; });
 
-  RenderSettings settings = render_settings(options, options.recipes.front().recipe, camera.camera, visibility);
-  renderer.warm_up(settings);
-  const std::string scene = options.pack.filename().string();
+  const uint32_t most_frames = live.scene().options.frames.value_or(UINT32_MAX);
   auto before = std::chrono::steady_clock::now();
   uint32_t frames = 0;
-  while (!glfwWindowShouldClose(window) && asked_to_end == 0 && frames < options.frames.value_or(UINT32_MAX)) {
+  while (!glfwWindowShouldClose(window) && asked_to_end == 0 && frames < most_frames) {
     glfwPollEvents();
     const VkExtent2D size = framebuffer_size(window);
     if (size.width == 0 || size.height == 0) {
@@ -139,18 +149,16 @@ void Window::run(const Options& options, const NamedCamera& camera, float scene_
       continue;
     }
     const auto now = std::chrono::steady_clock::now();
-    impl_->look(settings.camera);
-    impl_->fly(settings.camera, std::chrono::duration<float>(now - before).count());
+    impl_->look(live.settings.camera);
+    impl_->fly(live.settings.camera, std::chrono::duration<float>(now - before).count());
     before = now;
-    settings.width = size.width;
-    settings.height = size.height;
-    const FrameStats stats = renderer.draw(settings);
-    settings.previous_centers = stats.centers;
-    if (swapchain.show(renderer.shown_image(), size, framebuffer_size(window))) ++frames;
-    glfwSetWindowTitle(
-        window, fmt::format("{}: {}, {:.1f} ms, {} lights, {} shadow maps", scene, options.recipes.front().preset,
-                            stats.frame_ms, stats.lights, stats.shadow_maps)
-                    .c_str());
+    live.settings.width = size.width;
+    live.settings.height = size.height;
+    live.follow();
+    const FrameStats stats = live.renderer().draw(live.settings);
+    live.settings.previous_centers = stats.centers;
+    if (swapchain.show(live.renderer().shown_image(), size, framebuffer_size(window))) ++frames;
+    glfwSetWindowTitle(window, title(live, stats).c_str());
   }
 }
 

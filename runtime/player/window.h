@@ -5,8 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "player/camera.h"
-#include "player/options.h"
+#include "player/live_scene.h"
 
 namespace chandelier::player {
 
@@ -20,10 +19,9 @@ class Window {
 
   /// What the Vulkan instance must have to show pictures here.
   std::vector<const char*> instance_extensions() const;
-  /// Draws until the window is closed, Esc is pressed, a signal asks to end, or options.frames are drawn. The camera
-  /// flies through a scene of `scene_size_m` in ten seconds. Throws.
-  void run(const Options& options, const NamedCamera& camera, float scene_size_m, const gpu::Device& device,
-           Renderer& renderer, const VisibilitySource& visibility);
+  /// Draws until the window is closed, Esc is pressed, a signal asks to end, or the frames asked for are drawn. The
+  /// camera flies through the scene, as it is at the start, in ten seconds. Throws.
+  void run(LiveScene& live, const gpu::Device& device);
 
  private:
   struct Impl;

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-# Opens chandelier-play in a window on a display of its own.
+# Opens chandelier-play in a window on a display of its own, and replaces the pack that it shows.
+import json
 import os
+import re
 import select
 import shutil
 import signal
+import struct
 import subprocess
 import time
 import unittest
 
 import numpy
 
-from play_tool import PATIENCE_S, PLAY, PlayTest, SMALL, main
+from play_tool import LIGHTS, PATIENCE_S, PLAY, PlayTest, SMALL, bake, main
 
 
 class OnADisplay(PlayTest):
@@ -71,6 +74,144 @@ class Window(OnADisplay):
     def test_without_a_display_there_is_a_hint(self):
         blind = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
         self.assert_fails(1, "no display: use --output FILE.png", self.pack, env=blind)
+
+
+def edited(scene, path, edit):
+    """A GLB with another JSON."""
+    data = scene.read_bytes()
+    size = struct.unpack_from("<I", data, 12)[0]
+    document = json.loads(data[20:20 + size])
+    edit(document)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + size:]
+    path.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest)
+
+
+@unittest.skipUnless(all(map(shutil.which, ("import", "convert", "xwininfo"))), "ImageMagick or xwininfo is not installed")
+class Reload(OnADisplay):
+    FEWER = 12  # lights of the other pack
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.other = cls.pack.with_name("other.chandelier")
+
+        def put_lights_out(document):
+            nodes = [node for node in document["nodes"] if "KHR_lights_punctual" in node.get("extensions", {})]
+            for node in nodes[cls.FEWER:]:
+                del node["extensions"]["KHR_lights_punctual"]
+
+        edited(cls.pack.with_suffix(".glb"), cls.other.with_suffix(".glb"), put_lights_out)
+        bake(cls.other.with_suffix(".glb"), cls.other)
+
+    def setUp(self):
+        super().setUp()
+        self.shown = self.folder / "shown.chandelier"
+        self.pictures = {pack: self.picture(pack) for pack in (self.pack, self.other)}
+        self.assertGreater(int((self.pictures[self.pack] != self.pictures[self.other]).sum()), 1000)
+
+    def put(self, content):
+        """As the baker does: beside it, then renamed."""
+        beside = self.folder / "beside"
+        beside.write_bytes(content)
+        beside.replace(self.shown)
+
+    def open(self, *options):
+        self.put(self.pack.read_bytes())
+        with open(self.folder / "said", "w") as said:
+            self.window = subprocess.Popen([PLAY, self.shown, *SMALL, *options], env=self.env, stderr=said)
+        self.addCleanup(self.window.wait)
+        self.addCleanup(self.window.kill)
+        self.wait_for_picture(self.pack)
+
+    def said(self):
+        return (self.folder / "said").read_text().splitlines()
+
+    def title(self):
+        windows = subprocess.run(["xwininfo", "-root", "-tree"], env=self.env, check=True, capture_output=True, text=True).stdout
+        return re.search(r'"(shown\.chandelier.*?)": \(', windows)[1]
+
+    def wait(self, is_so, what):
+        patience = time.monotonic() + PATIENCE_S
+        while not is_so():
+            self.assertIsNone(self.window.poll(), f"the window closed by itself: {self.said()}")
+            self.assertLess(time.monotonic(), patience, f"waited for {what}: {self.said()}")
+            time.sleep(0.1)
+
+    def wait_for_picture(self, pack):
+        self.wait(lambda: numpy.array_equal(self.screen()[:54, :96], self.pictures[pack]), f"the picture of {pack.name}")
+
+    def wait_for_warning(self, says):
+        """A new last line, which is said once."""
+        before = len(self.said())
+        self.wait(lambda: len(self.said()) > before, says)
+        time.sleep(1.5)  # three more looks
+        self.assertEqual(len(self.said()), before + 1, self.said())
+        self.assertRegex(self.said()[-1], rf"\Achandelier-play: warning: {re.escape(str(self.shown))}: {says}.*; the older one stays\Z")
+        self.wait(lambda: "an older one" in self.title(), "the title")
+
+    def close(self):
+        self.window.send_signal(signal.SIGTERM)
+        self.assertEqual(self.window.wait(PATIENCE_S), 0, self.said())
+
+    def test_a_pack_that_is_replaced_is_shown(self):
+        self.open("--validation")
+        self.assertRegex(self.title(), rf"\Ashown.chandelier: reference, .* {LIGHTS} lights, {LIGHTS} shadow maps\Z")
+        self.put(self.other.read_bytes())
+        self.wait_for_picture(self.other)
+        self.wait(lambda: f" {self.FEWER} lights" in self.title(), "the title")
+        self.put(self.pack.read_bytes()[:-1000])
+        self.wait_for_warning("header.file_bytes: [0-9]+ where the file has [0-9]+")
+        self.wait_for_picture(self.other)
+        self.put(self.pack.read_bytes())
+        self.wait_for_picture(self.pack)
+        self.assertRegex(self.title(), rf"\Ashown.chandelier: reference, .* {LIGHTS} lights")
+        self.close()
+        self.assertEqual(self.said()[1:], ["chandelier-play: 0 messages from the validation layer"])
+
+    def test_what_cannot_be_shown_is_told_once_and_the_older_one_stays(self):
+        whole = self.other.read_bytes()
+        damaged = whole[:-5000] + bytes([whole[-5000] ^ 0x55]) + whole[-4999:]
+        self.open()
+        for content, says in ((b"", "too short for a pack"), (b"no pack at all\n" * 99, "not a Chandelier pack"),
+                              (damaged, ""), (whole[:8] + b"\1\0\0\0" + whole[12:], "a pack of another version, bake it again")):
+            with self.subTest(says=says):
+                self.put(content)
+                self.wait_for_warning(says)
+        away = self.folder / "away"
+        self.shown.rename(away)
+        self.wait_for_warning("cannot open \\(No such file or directory\\)")
+        self.shown.mkdir()
+        self.wait_for_warning("not a file \\(a folder\\)")
+        self.shown.rmdir()
+        self.wait_for_warning("cannot open")
+        self.wait_for_picture(self.pack)
+        self.put(whole)
+        self.wait_for_picture(self.other)
+        self.wait(lambda: "older" not in self.title(), "the title")
+        self.shown.rename(away)
+        self.wait_for_warning("cannot open")
+        away.rename(self.shown)  # the same file again
+        self.wait(lambda: "older" not in self.title(), "the title")
+        self.close()
+
+    def test_a_file_that_is_written_in_place(self):
+        budget = ["--preset", "chandelier", "--max-shadow-maps", "9"]
+        self.pictures = {pack: self.picture(pack, *budget) for pack in self.pictures}
+        self.open(*budget)
+        whole = self.other.read_bytes()
+        with open(self.shown, "wb") as file:
+            self.wait_for_warning("too short for a pack")
+            file.write(whole[:len(whole) // 2])
+            file.flush()
+            self.wait_for_warning("header.file_bytes")
+            self.wait_for_picture(self.pack)
+            file.write(whole[len(whole) // 2:])
+        self.wait_for_picture(self.other)
+        self.close()
+        lights = [re.search(r"a shadow map for each of (\d+) lights: selection by error makes 9", line) for line in self.said()]
+        self.assertEqual([int(found[1]) for found in lights if found], [LIGHTS, self.FEWER])  # kept anew
 
 
 if __name__ == "__main__":

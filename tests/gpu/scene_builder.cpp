@@ -198,7 +198,7 @@ void Scene::add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from
     add_batch(mesh, first, std::min(first + batch_indices, mesh.indices.size()), material, world_from_local, instance);
 }
 
-pack::File Scene::open() const {
+pack::Contents Scene::contents() const {
   pack::Contents contents = contents_;
   contents.lights = lights;
   for (pack::Light& light : contents.lights) {  // also around a spot light's cone
@@ -222,8 +222,12 @@ pack::File Scene::open() const {
   }
   contents.bake_info.unique_triangles = contents.bake_info.instanced_triangles = contents.indices.size() / 3;
   contents.bake_info.batch_triangles = batch_indices / 3;
+  return contents;
+}
+
+pack::File Scene::open() const {
   const pack::test::Folder folder;
-  pack::write(folder / "scene.chandelier", contents);
+  pack::write(folder / "scene.chandelier", contents());
   return pack::File(folder / "scene.chandelier");
 }
 

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pack that was opened to be looked at: through which camera, and with recipes that keep the budget there.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <cstdint>
+
+#include "player/camera.h"
+#include "player/options.h"
+
+namespace chandelier::player {
+
+/// Which file a path leads to and how it was left, so far as the file system tells; all 0 where there is none. Another
+/// one renamed over it, or written into it, is another stamp.
+struct FileStamp {
+  dev_t device = 0;
+  ino_t inode = 0;
+  off_t size_bytes = 0;
+  int64_t changed_ns = 0;  // mtime
+
+  bool operator==(const FileStamp&) const = default;
+};
+FileStamp stamp_of(const std::filesystem::path& path);
+
+struct Scene {
+  /// Opens asked.pack and keeps the budget, but for a comparison, whose sides keep it as they are drawn. Throws
+  /// pack::Error, and std::runtime_error where the pack has no such camera.
+  explicit Scene(const Options& asked);
+
+  Options options;  // with recipes that keep the budget
+  FileStamp stamp;  // from before the file was read
+  pack::File pack;  // a window's own copy: what is written into the file while it is shown must not be seen
+  NamedCamera camera;
+};
+
+}  // namespace chandelier::player
