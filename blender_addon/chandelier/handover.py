@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bake and Play: export, chandelier-bake beside Blender, then chandelier-play, which starts again with each new pack."""
+"""Bake and Play: export, chandelier-bake beside Blender, then chandelier-play, which shows each new pack by itself."""
 
 import os
 import pathlib
-from dataclasses import replace
 
 import bpy
 from bpy.props import BoolProperty
 
-from . import export, selection, surprises_ui
+from . import export, surprises_ui
 from .cameras import perspective_camera
-from .core import clusters, tools
+from .core import tools
 from .preferences import tool_folders
 
 POLL_S = 0.1
@@ -58,20 +57,21 @@ class Handover:
             if not job.error:
                 self.done = "Baked"
                 if self.play_after or self.player:
-                    self.play(self.play_command)
+                    self.play(self.play_command, anew=False)
         elif self.player and not self.player.is_running():
             self.error, self.player = self.player.error or self.error, None
         return self.bake is not None or self.player is not None
 
-    def play(self, command):
-        """Starts the player anew, so that it shows the pack as it is now."""
-        if self.player:
-            self.player.cancel()
-        self.play_command = command
+    def play(self, command, anew=True):
+        """Starts the player. An open one shows what takes its pack's place by itself: where its command is the same it may stay."""
         try:
-            self.player = tools.Job([tools.find("chandelier-play", tool_folders()), *command])
+            command = [tools.find("chandelier-play", tool_folders()), *command]
+            if self.player and self.player.command == command and not anew:
+                return
+            self.close_player()
+            self.player = tools.Job(command)
         except tools.ToolError as error:
-            self.player, self.error = None, str(error)
+            self.error = str(error)
 
     def stop(self):
         """Ends the bake; the older pack stays as it was."""
@@ -82,6 +82,9 @@ class Handover:
     def end(self):
         """Of the bake and the player."""
         self.stop()
+        self.close_player()
+
+    def close_player(self):
         if self.player:
             self.player.cancel()
         self.player = None
@@ -104,11 +107,6 @@ def play_command(scene):
     settings, camera = scene.chandelier, perspective_camera(scene)
     names = tools.Shown.__dataclass_fields__.keys() - {"camera"}
     shown = tools.Shown(camera=camera.name if camera else "", **{name: getattr(settings, name) for name in names})
-    if settings.budget_maps or settings.budget_mib:
-        try:  # what the preview says: it begins at the distance that is set, where the player's own search begins at 0
-            shown = replace(shown, d_init=selection.d_init_of(bpy.context), budget_maps=0, budget_mib=0)
-        except clusters.PreviewError:
-            pass  # no preview to agree with: the player keeps the budget
     return tools.play_command("", pack_path(scene), shown)[1:]
 
 

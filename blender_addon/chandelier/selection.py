@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from . import scene_lights
-from .cameras import camera_of, scene_camera_of
+from .cameras import camera_of
 from .core import clusters
 from .preferences import tool_folders
 
@@ -26,12 +26,6 @@ def select(context):
     """All lights as they are now, and which of them share shadow maps."""
     table = scene_lights.read(context.evaluated_depsgraph_get())
     return table, find().select(table, settings_of(context.scene), camera_of(context, table))
-
-
-def d_init_of(context):
-    """The distance that the scene's budget leads to where the player starts. Raises PreviewError."""
-    table = scene_lights.read(context.evaluated_depsgraph_get())
-    return find().select(table, settings_of(context.scene), scene_camera_of(context, table)).bill.d_init_m
 
 
 def owners_sharing(table, center, chosen):

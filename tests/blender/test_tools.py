@@ -48,11 +48,11 @@ def test_a_file_that_cannot_be_run_says_so(tmp_path):
         tools.Job([str(tmp_path / "none")])
 
 
-def test_a_budget_takes_the_place_of_the_distance():
+def test_the_player_is_told_the_distance_and_the_budget():
     command = tools.play_command("play", "a.chandelier", tools.Shown())
     assert command[command.index("--d-init") + 1] == "0.5" and "--max-shadow-maps" not in command and "--camera" not in command
-    command = tools.play_command("play", "a.chandelier", tools.Shown(budget_maps=20, budget_mib=100, camera="Eye"))
-    assert "--d-init" not in command
+    command = tools.play_command("play", "a.chandelier", tools.Shown(d_init=0.3, budget_maps=20, budget_mib=100, camera="Eye"))
+    assert command[command.index("--d-init") + 1] == "0.3"
     assert command[command.index("--max-shadow-maps") + 1] == "20" and command[command.index("--max-shadow-bytes") + 1] == "100"
     assert command[-2:] == ["--camera", "Eye"]
 

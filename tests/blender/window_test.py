@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The add-on in a real window under Xvfb: panels draw without complaint, a bake runs beside Blender, the player comes again."""
+"""The add-on in a real window under Xvfb: panels draw without complaint, a bake runs beside Blender, the player shows it."""
 
 import os
 import pathlib
@@ -26,7 +26,7 @@ class Window(unittest.TestCase):
     def setUpClass(cls):
         if not blender():
             raise unittest.SkipTest("no blender")
-        for program in ("Xvfb", "import", "convert"):
+        for program in ("Xvfb", "import", "convert", "xwininfo"):
             if not shutil.which(program):
                 raise unittest.SkipTest(f"no {program}")
         if not (BIN / "chandelier-play").exists():
@@ -71,7 +71,8 @@ class Window(unittest.TestCase):
 
     def test_all_steps_were_seen(self):
         seen = [line[6:] for line in self.said.splitlines() if line.startswith("seen: ")]
-        self.assertEqual(seen, ["the tab", "baking True", "baked", "player", "another player after saving", "player closed", "error", "progress",
+        self.assertEqual(seen, ["the tab", "baking True", "baked", "player", "its lights", "a light less after saving",
+                                "the same player", "player closed", "error", "progress",
                                 "cancelled", "the end"], self.said)
 
     def test_nothing_was_complained_of(self):

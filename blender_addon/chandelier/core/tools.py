@@ -61,15 +61,12 @@ class Shown:
 
 
 def play_command(program, pack, shown):
-    """A budget has the player choose the distance, so that only one of them is said."""
-    command = [program, str(pack), "--preset", "lightcluster", "--filter", shown.filter, "--distance-scaling",
-               shown.distance_scaling, "--z-far", f"{shown.z_far:.9g}", "--face-size", str(shown.face_size)]
+    command = [program, str(pack), "--preset", "lightcluster", "--filter", shown.filter, "--d-init", f"{shown.d_init:.9g}",
+               "--distance-scaling", shown.distance_scaling, "--z-far", f"{shown.z_far:.9g}", "--face-size", str(shown.face_size)]
     if shown.budget_maps:
         command += ["--max-shadow-maps", str(shown.budget_maps)]
     if shown.budget_mib:
         command += ["--max-shadow-bytes", str(shown.budget_mib)]
-    if not shown.budget_maps and not shown.budget_mib:
-        command += ["--d-init", f"{shown.d_init:.9g}"]
     return command + (["--camera", shown.camera] if shown.camera else [])
 
 
@@ -77,7 +74,7 @@ class Job:
     """A program that runs. What it says goes through a file, so that it never waits for someone to read it."""
 
     def __init__(self, command):
-        self.name = pathlib.Path(command[0]).stem
+        self.command, self.name = command, pathlib.Path(command[0]).stem
         self.partial = b""
         self.doing, self.warnings, self.last, self.error = "", [], "", ""
         self.passed = 0  # of PASSES, with those that were left out

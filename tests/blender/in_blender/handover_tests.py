@@ -207,26 +207,53 @@ class Play(HandoverCase):
         self.ended()
         self.assertIn("no display", self.handover.error)
 
-    def test_an_open_player_starts_again_with_the_settings_and_the_pack_of_now(self):
+    def bake_and_play(self):
+        """With a player that writes down how it was started, and goes on until it is ended."""
         programs = self.folder / "programs"
         programs.mkdir()
         (programs / "chandelier-bake").symlink_to(BIN / "chandelier-bake")
-        told = self.folder / "told"
+        self.told = self.folder / "told"
         program = programs / "chandelier-play"
-        program.write_text(f'#!/bin/sh\necho "$@" >> "{told}"\nexec sleep 60\n')
+        program.write_text(f'#!/bin/sh\necho "$@" >> "{self.told}"\nexec sleep 60\n')
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
         self.use_tools(programs)
-        self.addCleanup(lambda: self.handover.player.cancel())
+        self.addCleanup(self.handover.close_player)
         bpy.ops.chandelier.bake(play=True)
+
+    def starts(self, count):
+        """The commands of so many players, the last of which runs."""
+        for _ in range(500):
+            if self.told.exists() and len(self.told.read_text().splitlines()) >= count:
+                break
+            time.sleep(0.01)
+        self.assertTrue(self.handover.player.is_running())
+        lines = self.told.read_text().splitlines()
+        self.assertEqual(len(lines), count)
+        return lines
+
+    def test_an_open_player_starts_again_with_the_settings_and_the_pack_of_now(self):
+        self.bake_and_play()
+        self.starts(1)
         self.scene.chandelier.face_size = 64
         self.scene.chandelier.pack_path = "//other.chandelier"
         bpy.ops.chandelier.bake()
-        self.assertTrue(self.handover.player.is_running())
-        for _ in range(500):
-            if told.exists() and "other.chandelier" in told.read_text():
-                break
-            time.sleep(0.01)
-        self.assertRegex(told.read_text().splitlines()[-1], r"/other\.chandelier .*--face-size 64\b")
+        self.assertRegex(self.starts(2)[-1], r"/other\.chandelier .*--face-size 64\b")
+
+    def test_an_open_player_of_the_same_command_is_left_alone(self):
+        """As it shows by itself what takes its pack's place; Play starts it all the same."""
+        self.bake_and_play()
+        self.starts(1)
+        player, pack = self.handover.player, self.pack.read_bytes()
+        self.lamp.location.z = 3
+        bpy.ops.chandelier.bake()
+        bpy.ops.chandelier.bake(play=True)
+        self.assertNotEqual(self.pack.read_bytes(), pack)
+        self.assertIs(self.handover.player, player)
+        self.starts(1)
+        bpy.ops.chandelier.play()
+        self.assertIsNot(self.handover.player, player)
+        self.assertFalse(player.is_running())
+        self.starts(2)
 
     def test_it_takes_the_maps_that_the_preview_says(self):
         settings, render = self.scene.chandelier, self.scene.render
@@ -265,20 +292,6 @@ class Play(HandoverCase):
                         "--stats", stats], check=True, stdout=subprocess.DEVNULL)
         said = json.loads(stats.read_text())
         return said["counters"], said["recipe"]["settings"]["d_init_m"]
-
-    def test_without_a_preview_the_player_keeps_the_budget(self):
-        module = part("core.clusters")
-        self.scene.chandelier.budget_maps = 7
-        self.assertIn("--d-init", self.module.play_command(self.scene))
-        find = module.find
-        self.addCleanup(setattr, module, "find", find)
-
-        def fail(folders):
-            raise module.PreviewError("none")
-        module.find = fail
-        command = self.module.play_command(self.scene)
-        self.assertEqual(command[command.index("--max-shadow-maps") + 1], "7")
-        self.assertNotIn("--d-init", command)
 
     def test_settings_reach_the_player(self):
         """It draws what the scene says, into a picture."""

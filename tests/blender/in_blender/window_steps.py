@@ -3,6 +3,7 @@
 that was seen is a line on stdout."""
 
 import pathlib
+import re
 import subprocess
 import sys
 import time
@@ -96,13 +97,20 @@ def wait_for(condition, what, patience_s=60):
     return step
 
 
-first_player = []
+first_player, lights = [], []
 
 
-def keep_player():
+def lights_shown():
+    """As the player's title has it; 0 before there is one."""
+    windows = subprocess.run(["xwininfo", "-root", "-tree"], check=True, capture_output=True, text=True).stdout
+    title = re.search(r'"hall\.chandelier.*?, (\d+) lights,', windows)
+    return int(title[1]) if title else 0
+
+
+def take_a_light_away():
     first_player.append(handover().player)
     bpy.context.scene.chandelier.bake_on_save = True
-    bpy.data.objects["Cube Light"].location.z += 1
+    bpy.data.objects.remove(bpy.data.objects["Cube Light"])
     bpy.ops.wm.save_mainfile()
 
 
@@ -129,8 +137,10 @@ STEPS = [
     lambda: show_redo("edit_lights", use_power=True, factor=1), lambda: None, lambda: screenshot("redo_edit"), press_escape,
     lambda: bpy.data.objects["Cube"].select_set(True),
     lambda: show_redo("scatter", count=3), lambda: None, lambda: screenshot("redo_place"), press_escape, bake,
-    wait_for(lambda: handover().done == "Baked", "baked"), wait_for(lambda: handover().player is not None, "player"), keep_player,
-    wait_for(lambda: handover().player not in (None, *first_player), "another player after saving"), close_player,
+    wait_for(lambda: handover().done == "Baked", "baked"), wait_for(lambda: handover().player is not None, "player"),
+    wait_for(lambda: lights_shown() > 1, "its lights"), lambda: lights.append(lights_shown()), take_a_light_away,
+    wait_for(lambda: lights_shown() == lights[0] - 1, "a light less after saving"),
+    wait_for(lambda: first_player == [handover().player], "the same player"), close_player,
     wait_for(lambda: handover().player is None, "player closed"), fail_bake,
     wait_for(lambda: "the output is a folder" in handover().error, "error"), lambda: None, lambda: screenshot("error"), slow_bake,
     wait_for(lambda: handover().bake and handover().bake.doing == "materials", "progress"), lambda: None,
