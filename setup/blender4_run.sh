@@ -32,7 +32,7 @@ esac
 exec /usr/sbin/chroot /outside /usr/bin/env -C "$PWD" PATH="$CHANDELIER_OUTSIDE_PATH" "$program" "$@"
 END
 chmod +x "$root/usr/local/bin/run_outside"
-for program in import node npm; do
+for program in import node npm xwininfo; do
   if command -v "$program" >/dev/null; then ln -s run_outside "$root/usr/local/bin/$program"; fi
 done
 if [ -d "${CHANDELIER_BIN:-}" ]; then
