@@ -6,6 +6,8 @@ import pathlib
 import bpy
 from bpy.props import StringProperty
 
+from .core import tools
+
 OWN_PROGRAMS = pathlib.Path(__file__).resolve().parent / "bin"
 
 
@@ -26,4 +28,9 @@ def tool_folders():
     return [*([pathlib.Path(bpy.path.abspath(named))] if named else []), OWN_PROGRAMS]
 
 
-register, unregister = bpy.utils.register_classes_factory((Preferences,))
+register_classes, unregister = bpy.utils.register_classes_factory((Preferences,))
+
+
+def register():
+    tools.make_executable(OWN_PROGRAMS)
+    register_classes()

@@ -29,6 +29,17 @@ def ended(job):
     return job
 
 
+def test_unpacked_programs_may_run(tmp_path):
+    path, note = pathlib.Path(program(tmp_path, "")), tmp_path / "NOTICE"
+    note.touch()
+    for each in (path, note):
+        each.chmod(0o644)
+    tools.make_executable(tmp_path)
+    tools.make_executable(tmp_path / "missing")
+    assert tools.find("chandelier-bake", [tmp_path]) == str(path)
+    assert not os.access(note, os.X_OK)
+
+
 def test_programs_are_found_in_folders_before_path(tmp_path, monkeypatch):
     first, second = tmp_path / "a", tmp_path / "b"
     for folder in (first, second):

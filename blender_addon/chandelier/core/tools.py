@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds chandelier-bake and chandelier-play and runs them beside Blender."""
 
+import contextlib
 import os
 import pathlib
 import re
@@ -27,6 +28,14 @@ class ToolError(Exception):
 
 def program_name(tool):
     return tool + (".exe" if sys.platform == "win32" else "")
+
+
+def make_executable(folder):
+    """Blender unpacks a zip without its files' permissions. What may not be changed stays as it is, and is not found."""
+    for path in pathlib.Path(folder).glob("chandelier-*"):
+        if path.is_file() and not os.access(path, os.X_OK):
+            with contextlib.suppress(OSError):
+                path.chmod(path.stat().st_mode | 0o111)
 
 
 def find(tool, folders):

@@ -11,7 +11,7 @@ import zipfile
 import addon_utils
 import bpy
 
-from blender_case import ADDON, SOURCE, BlenderCase
+from blender_case import ADDON, SOURCE, BlenderCase, part
 
 
 def make_zip(target, *bundled):
@@ -80,7 +80,9 @@ class Installed(BlenderCase):
         source.unlink()  # the link to the source, so that the zip is what is installed
         for name in [name for name in sys.modules if name == ADDON or name.startswith(f"{ADDON}.")]:
             del sys.modules[name]
-        make_zip(self.folder / "chandelier.zip")
+        program = self.folder / "chandelier-bake"
+        program.write_text("#!/bin/sh\n")
+        make_zip(self.folder / "chandelier.zip", program)
         install(self.folder / "chandelier.zip")
         self.assertTrue((source / "LICENSE").is_file())
         before = classes()
@@ -89,6 +91,8 @@ class Installed(BlenderCase):
             module = sys.modules[ADDON]
             self.assertEqual(pathlib.Path(module.__file__).parent, source)
             self.assertIn("LightSettings", classes())
+            self.assertEqual(part("core.tools").find("chandelier-bake", part("preferences").tool_folders()),
+                             str(source / "bin" / "chandelier-bake"))
             self.assertEqual(self.add_light().data.chandelier.priority, 128)
             bpy.ops.preferences.addon_disable(module=ADDON)
             self.assertFalse(hasattr(bpy.types.Light, "chandelier"))
