@@ -1,11 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves or changes a light here and will not in a pack: the exporter writes the keyframes of objects' places, and nothing else
+"""What moves or changes a light here, in a pack too or not: the exporter writes the keyframes of objects' places, and nothing else
 that changes with time."""
 
 import bpy
 
 # How the paths of properties begin of which the exporter samples an object's place; later ones take any ("" begins them all).
 SAMPLED = ("location", "rotation", "scale", "delta_") if bpy.app.version < (4, 2) else ("",)
+
+
+def is_exported(thing):
+    """Will the exported file move an object?"""
+    while thing:
+        if any(curve.data_path.startswith(SAMPLED) for curve in curves_of(thing)):
+            return True
+        thing = thing.parent
+    return False
 
 
 def lost(light):

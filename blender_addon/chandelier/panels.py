@@ -37,6 +37,7 @@ def draw_shadow_settings(layout, settings):
     row.active = settings.distance_scaling != "none"
     row.prop(settings, "z_far")
     column.prop(settings, "view")
+    column.prop(settings, "dynamic_lights")
     column = layout.column()
     column.prop(settings, "face_size")
     column.prop(settings, "filter")

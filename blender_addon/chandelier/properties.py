@@ -58,6 +58,10 @@ class SceneSettings(bpy.types.PropertyGroup):
     z_far: FloatProperty(
         name="Far Distance", description="Distance from the camera that scales it by one", default=30, min=0.001, soft_max=1000,
         unit="LENGTH", update=redraw)
+    dynamic_lights: EnumProperty(
+        name="Moving Lights", update=redraw, description="Lights that are dynamic, or that the exported file moves", default="cluster", items=(
+            ("cluster", "Share", "They share shadow maps like others"),
+            ("own", "Own Maps", "Each has a shadow map to itself, so that the others' may stay as they are")))
     face_size: IntProperty(
         name="Face Size", description="Width of one face of a cube shadow map, texels", default=512, min=16, max=16384,
         update=redraw)

@@ -9,6 +9,7 @@ import math
 import bpy
 import numpy as np
 
+from . import motion
 from .core import light_table, photometry
 
 KINDS = {"POINT": photometry.POINT, "SPOT": photometry.SPOT, "SUN": photometry.DIRECTIONAL}
@@ -102,6 +103,8 @@ class LightReader:
             elif isinstance(thing, bpy.types.NodeTree):
                 self.records.clear()
                 self.table = None
+            elif isinstance(thing, bpy.types.Action):
+                self.table = None
             elif isinstance(thing, bpy.types.Object) and update.is_updated_transform and not update.is_updated_geometry:
                 moved = True
             elif isinstance(thing, (bpy.types.Object, bpy.types.Collection, bpy.types.Scene)):
@@ -122,27 +125,30 @@ class LightReader:
 
     def _read_all(self, depsgraph, matrices):
         hidden = not_rendered()
-        records, names, owners = [], [], []
+        records, names, owners, moves = [], [], [], []
         self.places = []
         for place, instance in enumerate(depsgraph.object_instances):
             thing = instance.object
             if thing.type != "LIGHT" or thing.hide_render:
                 continue
-            record = self._record(thing.data)
+            record, instancer = self._record(thing.data), None
             name = owner = thing.name_full
             if record is None or name in hidden:
                 continue
             if instance.is_instance:
-                parent = instance.parent
-                owner = parent.name_full
+                instancer = instance.parent
+                owner = instancer.name_full
                 name = f"{owner}/{name}"
-                if parent.hide_render or owner in hidden:
+                if instancer.hide_render or owner in hidden:
                     continue
             self.places.append(place)
             records.append(record)
             names.append(name)
             owners.append(owner)
-        self.table = light_table.make_table(matrices[self.places], np.array(records, light_table.DATA), names, owners)
+            moves.append(motion.is_exported(thing) or motion.is_exported(instancer))
+        data = np.array(records, light_table.DATA)
+        data["flags"] |= np.array(moves, np.uint8) * np.uint8(light_table.MOVES)
+        self.table = light_table.make_table(matrices[self.places], data, names, owners)
 
     def _record(self, data):
         pointer = data.as_pointer()

@@ -13,8 +13,9 @@ from .preferences import tool_folders
 def settings_of(scene):
     settings = scene.chandelier
     return clusters.Settings(
-        filter=settings.filter, distance_scaling=settings.distance_scaling, face_size_px=settings.face_size,
-        d_init_m=settings.d_init, z_far_m=settings.z_far, budget_maps=settings.budget_maps, budget_mib=settings.budget_mib)
+        filter=settings.filter, distance_scaling=settings.distance_scaling, dynamic_lights=settings.dynamic_lights,
+        face_size_px=settings.face_size, d_init_m=settings.d_init, z_far_m=settings.z_far, budget_maps=settings.budget_maps,
+        budget_mib=settings.budget_mib)
 
 
 def find():

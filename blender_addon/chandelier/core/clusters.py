@@ -15,7 +15,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from .bill import MIB, Bill
-from .light_table import DYNAMIC, NO_SHADOW, OWN_MAP
+from .light_table import DYNAMIC, MOVES, NO_SHADOW, OWN_MAP
 from .photometry import RANGE_THRESHOLD_LX
 
 ABI = 2
@@ -120,6 +120,8 @@ def _columns(table):
     """Name -> array, of those that the table has."""
     count = len(table.position)
     columns = {name: _column(table, names, kind, parts, count) for name, names, kind, parts in COLUMNS}
+    if columns["flags"] is not None:
+        columns["flags"] = np.where(columns["flags"] & MOVES, columns["flags"] | DYNAMIC, columns["flags"]).astype(np.uint8)
     return count, {name: values for name, values in columns.items() if values is not None}
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import photometry
 
-DYNAMIC, OWN_MAP, NO_SHADOW = 1, 2, 4  # flags
+DYNAMIC, OWN_MAP, NO_SHADOW, MOVES = 1, 2, 4, 8  # flags; MOVES: the exported file moves it, which makes it dynamic unsaid
 NO_GROUP = -1
 
 # What a light's data-block says, whatever the number of places it shines from.

@@ -62,6 +62,7 @@ class Shown:
     d_init: float = 0.5
     distance_scaling: str = "grow"
     z_far: float = 30
+    dynamic_lights: str = "cluster"
     face_size: int = 512
     filter: str = "pcss"
     budget_maps: int = 0
@@ -71,7 +72,8 @@ class Shown:
 
 def play_command(program, pack, shown):
     command = [program, str(pack), "--preset", "lightcluster", "--filter", shown.filter, "--d-init", f"{shown.d_init:.9g}",
-               "--distance-scaling", shown.distance_scaling, "--z-far", f"{shown.z_far:.9g}", "--face-size", str(shown.face_size)]
+               "--distance-scaling", shown.distance_scaling, "--z-far", f"{shown.z_far:.9g}", "--dynamic-lights", shown.dynamic_lights,
+               "--face-size", str(shown.face_size)]
     if shown.budget_maps:
         command += ["--max-shadow-maps", str(shown.budget_maps)]
     if shown.budget_mib:

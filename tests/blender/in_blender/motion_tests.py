@@ -39,9 +39,13 @@ class Motion(GltfCase):
         return {item.name: item.text for item in bpy.context.window_manager.chandelier.surprises if item.rule == "lost_motion"}
 
     def moving(self):
-        """The names of the lights that are dynamic in the pack."""
+        """The names of the lights that are dynamic in the pack, as the preview has to know too."""
         self.export()
-        return {name for name, lights in self.baked().items() if all(light["dynamic"] for light in lights)}
+        dynamic = {name for name, lights in self.baked().items() if all(light["dynamic"] for light in lights)}
+        table = part("scene_lights").read(bpy.context.evaluated_depsgraph_get())
+        flags = part("core.light_table").DYNAMIC | part("core.light_table").MOVES
+        self.assertEqual({name for name, flag in zip(table.names, table.flags) if flag & flags}, dynamic)
+        return dynamic
 
     def test_keyframes_of_places_are_exported(self):
         self.key(self.light("Keyed"))

@@ -81,6 +81,19 @@ class Preview(BlenderCase):
         bill = self.update().bill
         self.assertEqual((bill.shadow_maps, bill.shadowless_in_view, bill.lights_in_view), (2, 1, 8))
 
+    def test_lights_that_move_may_keep_their_own_maps(self):
+        lamps = self.add_ring("Left", (-4, 0, 1))
+        lamps[1].data.chandelier.dynamic = True
+        for frame in (1, 20):
+            lamps[2].location.x += 0.1
+            lamps[2].keyframe_insert("location", frame=frame)
+        self.assertEqual(self.update().bill.shadow_maps, 1)
+        self.scene.chandelier.dynamic_lights = "own"
+        self.assertEqual(self.update().bill.shadow_maps, 3)
+        lamps[2].animation_data_clear()
+        lamps[2].location.x += 0.01
+        self.assertEqual(self.update().bill.shadow_maps, 2)
+
     def test_collection_instances_count(self):
         collection = bpy.data.collections.new("Chandelier")
         self.add_light("Candle", location=(0, 0, 1), energy=20, collection=collection)
