@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from . import scene_lights
 from .core import photometry
 
 
@@ -42,7 +43,7 @@ class CHANDELIER_OT_edit_lights(bpy.types.Operator):
     use_range: BoolProperty(name="Range", options={"SKIP_SAVE"})
     range: FloatProperty(name="Range", description="0: no Custom Distance", default=8, min=0, soft_max=100, unit="LENGTH")
     use_radius: BoolProperty(name="Radius", options={"SKIP_SAVE"})
-    radius: FloatProperty(name="Radius", description="Of what shines: softens shadows", default=0.05, min=0, soft_max=1, unit="LENGTH")
+    radius: FloatProperty(name="Radius", description="Of what shines: softens shadows. Suns have an angle instead", default=0.05, min=0, soft_max=1, unit="LENGTH")
     use_shadow: BoolProperty(name="Shadow", options={"SKIP_SAVE"})
     shadow: BoolProperty(name="Throws a Shadow", default=False)
     use_priority: BoolProperty(name="Priority", options={"SKIP_SAVE"})
@@ -64,9 +65,12 @@ class CHANDELIER_OT_edit_lights(bpy.types.Operator):
         for data in datas:
             self._edit(data)
         linked = sum(not is_editable(light.data) for light in lights)
+        suns = sum(light.data.type == "SUN" for light in lights) if self.use_radius else 0
         others = sum(light.type == "LIGHT" and light.data in datas and light not in lights for light in context.scene.objects)
         if linked:
             self.report({"WARNING"}, f"{linked} lights belong to another file and stay as they are")
+        if suns:
+            self.report({"WARNING"}, f"{suns} {'sun has' if suns == 1 else 'suns have'} an angle instead of a radius, which stays as it is")
         if others:
             self.report({"WARNING"}, f"{others} lights that are not selected share this data and change too")
         return {"FINISHED"}
@@ -79,10 +83,10 @@ class CHANDELIER_OT_edit_lights(bpy.types.Operator):
         if self.use_range:
             data.use_custom_distance = self.range > 0
             data.cutoff_distance = self.range if self.range > 0 else data.cutoff_distance
-        if self.use_radius:
+        if self.use_radius and data.type != "SUN":
             data.shadow_soft_size = self.radius
         if self.use_shadow:
-            data.use_shadow = self.shadow
+            scene_lights.set_shadow(data, self.shadow)
         for name in ("priority", "dynamic", "cluster", "group"):
             if getattr(self, f"use_{name}"):
                 setattr(data.chandelier, name, getattr(self, name))

@@ -5,6 +5,7 @@ import textwrap
 
 import bpy
 
+from . import scene_lights
 from .core import surprises
 from .handover import handover, pack_path
 from .preview import bill_lines
@@ -201,7 +202,11 @@ class CHANDELIER_PT_light(Properties, bpy.types.Panel):
             layout.prop(light, "shadow_soft_size", text="Radius")
         if light.type == "SUN":
             layout.prop(light, "angle")
-        layout.prop(light, "use_shadow", text="Shadow")
+        cycles = scene_lights.cycles_switch(light)
+        column = layout.column(heading="Shadow" if cycles else "")
+        column.prop(light, "use_shadow", text="EEVEE" if cycles else "Shadow")
+        if cycles:
+            column.prop(cycles, "cast_shadow", text="Cycles")
 
 
 class CHANDELIER_PT_scene(Properties, bpy.types.Panel):

@@ -13,6 +13,7 @@ from . import motion
 from .core import light_table, photometry
 
 KINDS = {"POINT": photometry.POINT, "SPOT": photometry.SPOT, "SUN": photometry.DIRECTIONAL}
+WIDEST_SUN_RAD = math.radians(179)  # of the 180° that Blender lets a sun have, half has no tangent
 HAS_EXPOSURE = "exposure" in bpy.types.Light.bl_rna.properties
 HAS_TEMPERATURE = "use_temperature" in bpy.types.Light.bl_rna.properties
 
@@ -50,12 +51,27 @@ def range_of(light):
 
 def radius_of(light):
     """Metres; of a sun the tangent of half its angle."""
-    return math.tan(light.angle / 2) if light.type == "SUN" else light.shadow_soft_size
+    return math.tan(min(light.angle, WIDEST_SUN_RAD) / 2) if light.type == "SUN" else light.shadow_soft_size
+
+
+def cycles_switch(light):
+    """Cycles' settings of a light where they have a switch for its shadow of their own; or nothing."""
+    settings = getattr(light, "cycles", None)
+    return settings if hasattr(settings, "cast_shadow") else None
 
 
 def casts_shadow(light):
     """Not where it is switched off for EEVEE, or for Cycles where that has a switch of its own."""
-    return light.use_shadow and getattr(getattr(light, "cycles", None), "cast_shadow", True)
+    cycles = cycles_switch(light)
+    return light.use_shadow and (cycles is None or cycles.cast_shadow)
+
+
+def set_shadow(light, shadow):
+    """For both, so that casts_shadow() says the same."""
+    light.use_shadow = shadow
+    cycles = cycles_switch(light)
+    if cycles:
+        cycles.cast_shadow = shadow
 
 
 def record_of(light, groups):

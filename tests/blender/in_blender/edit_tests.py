@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bulk edit, the list of lights, and surprises with their remedies."""
 
+import contextlib
+import io
 import math
 
 import bpy
@@ -50,6 +52,29 @@ class Edit(LightsCase):
         self.assertEqual((settings.dynamic, settings.cluster, settings.group), (True, False, "bar"))
         bpy.ops.chandelier.edit_lights(use_range=True, range=0)
         self.assertFalse(data.use_custom_distance)
+
+    def test_shadow_is_on_again_wherever_it_was_off(self):
+        casts_shadow = part("scene_lights").casts_shadow
+        self.one.data.use_shadow = False
+        if hasattr(self.two.data.cycles, "cast_shadow"):  # from some version on there is one switch for both
+            self.two.data.cycles.cast_shadow = False
+        self.select(self.one, self.two)
+        for shadow in (True, False):
+            bpy.ops.chandelier.edit_lights(use_shadow=True, shadow=shadow)
+            self.assertEqual([casts_shadow(light.data) for light in (self.one, self.two, self.three)], [shadow, shadow, True])
+
+    def test_suns_have_no_radius_to_set(self):
+        sun = self.add_light("Sun", "SUN", angle=0.1)
+        before = sun.data.shadow_soft_size, sun.data.angle
+        self.select(self.one, sun)
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            bpy.ops.chandelier.edit_lights(use_radius=True, radius=0.3)
+        self.assertIn("1 sun has an angle instead of a radius", said.getvalue())
+        self.assertEqual((sun.data.shadow_soft_size, sun.data.angle), before)
+        self.assertAlmostEqual(self.one.data.shadow_soft_size, 0.3, places=6)
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            bpy.ops.chandelier.edit_lights(use_priority=True, priority=3)
+        self.assertNotIn("sun", said.getvalue())
 
     def test_shared_data_is_edited_once(self):
         self.three.data = self.one.data

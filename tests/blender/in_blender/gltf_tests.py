@@ -113,6 +113,11 @@ class Written(GltfCase):
         self.assertAlmostEqual(self.lights()["Sun"]["extras"]["chandelier"]["radius_m"], math.tan(math.radians(1.5)), places=7)
         self.assertNotIn("range", self.lights()["Sun"])
 
+    def test_the_widest_sun_is_exported_and_baked(self):
+        self.lamp("Sun", "SUN", energy=2, angle=math.pi)
+        self.export()
+        self.assertEqual(len(self.baked()["Sun"]), 1)
+
     def test_a_colour_above_one_and_nodes(self):
         self.lamp("Bright", color=(4, 2, 1), energy=10)
         nodes = self.lamp("Nodes", energy=10).data

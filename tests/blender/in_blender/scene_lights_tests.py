@@ -50,6 +50,17 @@ class Read(BlenderCase):
         off = {name: bool(table.flags[table.names.index(name)] & part("core.light_table").NO_SHADOW) for name in table.names}
         self.assertEqual(off, {"On": False, "Off": True, "Off in Cycles": has_switch})
 
+    def test_a_switched_shadow_is_one_for_both(self):
+        data = self.add_light().data
+        for shadow in (False, True):
+            scene_lights.set_shadow(data, shadow)
+            self.assertEqual((scene_lights.casts_shadow(data), data.use_shadow), (shadow, shadow))
+            self.assertEqual(getattr(data.cycles, "cast_shadow", shadow), shadow)
+
+    def test_the_widest_sun_has_a_radius_yet(self):
+        self.add_light("Sun", "SUN", energy=3, angle=math.pi)
+        self.assertClose(self.table().radius_m, (math.tan(math.radians(89.5)),), 1e-3)
+
     def test_groups_are_numbers(self):
         for name, group in (("A", "bar"), ("B", ""), ("C", "hall"), ("D", "bar")):
             self.add_light(name).data.chandelier.group = group
