@@ -140,7 +140,7 @@ class LightReader:
         return self.table
 
     def _read_all(self, depsgraph, matrices):
-        hidden = not_rendered()
+        hidden, still = not_rendered(), set()
         records, names, owners, moves = [], [], [], []
         self.places = []
         for place, instance in enumerate(depsgraph.object_instances):
@@ -161,7 +161,7 @@ class LightReader:
             records.append(record)
             names.append(name)
             owners.append(owner)
-            moves.append(motion.is_exported(thing) or motion.is_exported(instancer))
+            moves.append(motion.is_exported(thing, still) or motion.is_exported(instancer, still))
         data = np.array(records, light_table.DATA)
         data["flags"] |= np.array(moves, np.uint8) * np.uint8(light_table.MOVES)
         self.table = light_table.make_table(matrices[self.places], data, names, owners)

@@ -15,30 +15,33 @@ WAYS = [Vector(way).normalized() for way in (*FACES, *CORNERS)]  # of a cube
 LAMP_M = 0.3  # of a double-sided mesh, only what is this near is taken for a lamp or wall that the light is stuck in
 
 
-def lights_with_matrices(context, depsgraph):
-    """Each light object once, with the matrix of where it is first seen."""
+def placed_lights(context, depsgraph):
+    """Each light object once, with the matrix of where it is first seen and all that instances it."""
     found = {}
     for instance in depsgraph.object_instances:
         if instance.object.type == "LIGHT":
-            found.setdefault(instance.object.original, instance.matrix_world.copy())
+            _, instancers = found.setdefault(instance.object.original, (instance.matrix_world.copy(), {}))
+            if instance.is_instance:
+                instancers[instance.parent.original] = True
     for thing in context.scene.objects:
         if thing.type == "LIGHT":
-            found.setdefault(thing, thing.matrix_world.copy())
-    return {light: matrix for light, matrix in found.items() if not light.hide_render}
+            found.setdefault(thing, (thing.matrix_world.copy(), {}))
+    return {light: place for light, place in found.items() if not light.hide_render}
 
 
 def records_of(context):
     depsgraph = context.evaluated_depsgraph_get()
-    lights = lights_with_matrices(context, depsgraph)
+    lights = placed_lights(context, depsgraph)
     users = {}
     for light in lights:
         users[light.data] = users.get(light.data, 0) + 1
-    expected, meshes = set(context.scene.objects) - set(light_list.hidden_by_solo(context)), Meshes(depsgraph)
-    return [record_of(meshes, light, matrix, users[light.data], light in expected and not light.visible_get())
-            for light, matrix in lights.items()]
+    expected, meshes, still = set(context.scene.objects) - set(light_list.hidden_by_solo(context)), Meshes(depsgraph), set()
+    return [record_of(meshes, light, matrix, users[light.data], light in expected and not light.visible_get(),
+                      motion.lost(light, instancers, still))
+            for light, (matrix, instancers) in lights.items()]
 
 
-def record_of(meshes, light, matrix, users, hidden):
+def record_of(meshes, light, matrix, users, hidden, lost_motion):
     data = light.data
     axes = np.array(matrix.to_3x3()).T
     scale = tuple(float(length) for length in np.linalg.norm(axes, axis=1))
@@ -50,7 +53,7 @@ def record_of(meshes, light, matrix, users, hidden):
         sheared=bool(abs(unit @ unit.T - np.eye(3)).max() > 1e-3),
         own_nodes=data.use_nodes and (leaves is None or any(socket.is_linked for socket in leaves.inputs)),
         inside="" if data.type == "SUN" else meshes.around(matrix.translation),
-        hidden=hidden, lost_motion=motion.lost(light), dynamic=data.chandelier.dynamic)
+        hidden=hidden, lost_motion=lost_motion, dynamic=data.chandelier.dynamic)
 
 
 class Meshes:
