@@ -33,21 +33,17 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
           .z_far_m = settings.recipe.z_far_m};
 }
 
-float aspect_of(const RenderSettings& settings) {
-  return static_cast<float>(settings.width) / static_cast<float>(settings.height);
-}
-
 // LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved. But the
-// reference knows no groups and no lights with a radius, which are what their author asked for.
-bool reference_is_cheaper(const Recipe& recipe, size_t lights, size_t maps, bool is_authored) {
-  return recipe.select == Select::light_clusters && maps > 0 && !is_authored &&
+// reference knows no groups, which are what their lights' author asked for.
+bool reference_is_cheaper(const Recipe& recipe, size_t lights, size_t maps, bool a_group_shares) {
+  return recipe.select == Select::light_clusters && maps > 0 && !a_group_shares &&
          static_cast<float>(maps) >= recipe.reference_share * static_cast<float>(lights);
 }
 
-// The reference's answers; everything else as asked.
-Recipe reference_of(Recipe recipe) {
+// The reference's answers; everything else as asked. Lights that somewhere in the pack have a radius stay soft.
+Recipe reference_of(Recipe recipe, bool has_area_lights) {
   recipe.select = Select::per_light;
-  recipe.filter = Filter::hard;
+  if (!has_area_lights) recipe.filter = Filter::hard;
   recipe.deliver = Deliver::inlined;
   return recipe;
 }
@@ -67,8 +63,8 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
   auto start = Clock::now();
   plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, aids);
   if (reference_is_cheaper(plan.recipe, plan.list.shadowed_in_view(), plan.list.maps.size(),
-                           plan.list.has_area_lights || group_shares(lights, plan.list))) {
-    plan.recipe = reference_of(plan.recipe);
+                           group_shares(lights, plan.list))) {
+    plan.recipe = reference_of(plan.recipe, plan.list.has_area_lights);
     plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, {.out_of_view = aids.out_of_view});
   }
   plan.select_ms = ms_since(start);
@@ -91,8 +87,7 @@ ShadowMapCounter::ShadowMapCounter(std::span<const pack::Light> lights, const Re
 
 uint64_t ShadowMapCounter::count(float d_init_m, uint64_t most) {
   const size_t maps = maps_.count(d_init_m, most);
-  const bool is_authored = maps_.has_area_lights() || maps_.group_shares();
-  return reference_is_cheaper(recipe_, maps_.in_view(), maps, is_authored) ? maps_.in_view() : maps;
+  return reference_is_cheaper(recipe_, maps_.in_view(), maps, maps_.group_shares()) ? maps_.in_view() : maps;
 }
 
 FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights) {

@@ -26,4 +26,9 @@ struct RenderSettings {
   VisibilitySource visibility;             // needed by filter rays, unused by others
 };
 
+/// Width over height.
+inline float aspect_of(const RenderSettings& settings) {
+  return static_cast<float>(settings.width) / static_cast<float>(settings.height);
+}
+
 }  // namespace chandelier

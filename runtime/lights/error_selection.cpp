@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lights/map_shares.h"
+#include "lights/pack_lights.h"
 #include "lights/shown_curve.h"
 
 namespace chandelier {
@@ -18,10 +19,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr uint32_t most_candidates = 16;  // nearest centres that a light is tried with
 constexpr uint32_t exchange_below = 8;    // maps; few enough that each matters
 constexpr uint32_t exchange_tries = 3;    // centres that are tried as new ones, the most promising
-
-bool is_directional(const pack::Light& light) {
-  return light.type == pack::LightType::directional;
-}
 
 // An assignment of lights to centres, and the picture that it makes: one luminance for each point.
 class Search {

@@ -3,6 +3,7 @@
 #include "lights/light_list.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -71,7 +72,10 @@ std::vector<Member> members_of_light_clusters(std::span<const pack::Light> light
   std::vector<Member> members;
   for (uint32_t i = 0; i < numbers.size(); ++i) {
     const lights::LightCluster& joined = result.clusters[result.cluster_of_light[i]];
-    members.push_back({numbers[i], numbers[joined.center], joined.range_m, area_radius_m(recipe, joined)});
+    // A lone light is as large as its author made it; d_min where nobody did (LightCluster §3.2.2).
+    const bool is_as_authored = joined.light_count == 1 && lights[numbers[i]].radius_m > 0.0f;
+    const float radius = is_as_authored ? 0.0f : area_radius_m(recipe, joined);
+    members.push_back({numbers[i], numbers[joined.center], joined.range_m, radius});
   }
   return members;
 }
@@ -194,6 +198,9 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
 LightList make_list(std::span<const pack::Light> lights, std::vector<Member> members, float z_far_m) {
   std::sort(members.begin(), members.end(), by_center);
   LightList list;
+  list.has_area_lights = std::any_of(lights.begin(), lights.end(), [](const pack::Light& light) {
+    return light.shadowless == 0 && light.radius_m > 0.0f;
+  });
   for (size_t i = 0; i < members.size(); ++i) {
     const Member& member = members[i];
     if (i == 0 || members[i - 1].center != member.center) {
@@ -203,11 +210,12 @@ LightList make_list(std::span<const pack::Light> lights, std::vector<Member> mem
                            .first_light = static_cast<uint32_t>(i),
                            .is_directional = is_directional(lights[member.center])});
       list.map_direction_ws.push_back(lights[member.center].direction_ws);
+      list.map_authored_radius_m.push_back(0.0f);
     }
     frame::ShadowMap& map = list.maps.back();
-    const float radius_m = source_radius_m(lights[member.light], z_far_m);
-    map.filter_radius_m = std::max(map.filter_radius_m, radius_m);
-    list.has_area_lights |= radius_m > 0.0f;
+    float& authored_m = list.map_authored_radius_m.back();
+    authored_m = std::max(authored_m, source_radius_m(lights[member.light], z_far_m));
+    map.filter_radius_m = std::max(map.filter_radius_m, authored_m);
     list.lights.push_back(frame_light(lights[member.light]));
     list.lights.back().radiant *= member.share;
     list.lights.back().map = static_cast<uint32_t>(list.maps.size() - 1);
@@ -217,6 +225,12 @@ LightList make_list(std::span<const pack::Light> lights, std::vector<Member> mem
     list.share.push_back(member.share);
   }
   return list;
+}
+
+// By how much a map's disc is larger than the largest of its lights. The widths of blurs add up as squares.
+float added_radius_m(const LightList& list, uint32_t map) {
+  const float disc_m = list.maps[map].filter_radius_m, authored_m = list.map_authored_radius_m[map];
+  return std::sqrt(std::max(0.0f, disc_m * disc_m - authored_m * authored_m));
 }
 
 }  // namespace
@@ -298,7 +312,7 @@ double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& 
   std::vector<MapMember> members;
   for (size_t i = 0; i < list.lights.size(); ++i)
     members.push_back({index_in(in_view, list.pack_light[i]), index_in(in_view, list.center[i]),
-                       list.maps[list.lights[i].map].filter_radius_m, list.share[i]});
+                       added_radius_m(list, list.lights[i].map), list.share[i]});
   return aids.surroundings->by_error().expected_rmse(in_view, members, {camera, aspect, aids.ambient, aids.exposure_ev},
                                                      recipe);
 }

@@ -20,13 +20,14 @@ namespace chandelier {
 struct LightList {
   std::vector<frame::FrameLight> lights;
   std::vector<frame::ShadowMap> maps;         // cube, first_view and view_count are still open
+  std::vector<float> map_authored_radius_m;   // of each map, as filter_radius_m: the largest radius of its lights
   std::vector<glm::vec3> map_direction_ws;    // the way that each map's centre shines: cascades are drawn along it
   std::vector<uint32_t> pack_light;           // number in the pack, of each of `lights`
   std::vector<uint32_t> center;               // number in the pack of the light whose map each of `lights` takes
   std::vector<float> share;                   // how much of the light each of `lights` is; those of one add up to 1
   uint32_t lights_in_view = 0;                // each counted once, those without shadow too
   std::vector<frame::FrameLight> shadowless;  // in view, of no map: they shine through everything
-  bool has_area_lights = false;               // of `lights`: pack::Light::radius_m is above 0
+  bool has_area_lights = false;               // a light of the pack throws a shadow and has a radius, in view or not
 
   uint32_t shadowed_in_view() const { return lights_in_view - static_cast<uint32_t>(shadowless.size()); }
 };
@@ -53,8 +54,8 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
 /// Is any map of the list shared by lights of a group?
 bool group_shares(std::span<const pack::Light> lights, const LightList& list);
 
-/// Expected RMSE of the shown picture against one hard shadow map for each light, of what select_lights() made of the
-/// same recipe, camera and aids: estimated_rmse().
+/// Expected RMSE of the shown picture against one shadow map for each light, hard where the light has no radius, of
+/// what select_lights() made of the same recipe, camera and aids: estimated_rmse().
 double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& camera, float aspect,
                      const SelectAids& aids);
 

@@ -6,6 +6,7 @@
 
 #include "frame_schema.h"
 #include "lights/mean_materials.h"
+#include "lights/pack_lights.h"
 
 namespace chandelier {
 namespace {
@@ -15,10 +16,6 @@ constexpr float lift = 5e-4f;         // off the surface, of the distance to the
 constexpr float middle_grey = 0.18f;  // shading/exposure.comp
 constexpr float darkest = 1e-6f;      // shading/exposure.comp
 constexpr uint32_t most_backs = 64;   // between the eye and what it sees
-
-bool is_directional(const pack::Light& light) {
-  return light.type == pack::LightType::directional;
-}
 
 // 0 to 1, the same for the same number: points lie anywhere in their cells, so that no pattern of the scene's meets the
 // grid's. Integer hash by Ettinger ("triple32", first two rounds).

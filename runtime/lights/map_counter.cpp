@@ -13,7 +13,6 @@ MapCounter::MapCounter(std::span<const pack::Light> lights, const Recipe& recipe
   std::vector<uint64_t> groups;  // of the two kinds
   for (const uint32_t i : lights_in_view(lights, camera, aspect, out_of_view)) {
     if (lights[i].shadowless != 0) continue;
-    has_area_lights_ |= lights[i].radius_m > 0.0f;
     const bool directional = is_directional(lights[i]);
     (directional ? far : near)
         .push_back(directional ? far_cluster_light(lights[i], recipe.z_far_m) : cluster_light(lights[i]));

@@ -21,7 +21,6 @@ class MapCounter {
 
   size_t in_view() const { return in_view_; }  // lights that throw a shadow
   bool group_shares() const { return group_shares_; }
-  bool has_area_lights() const { return has_area_lights_; }
   /// Any number above `most` where there are more.
   size_t count(float d_init_m, size_t most);
   /// No later d_init will be larger, which makes counting faster.
@@ -31,7 +30,6 @@ class MapCounter {
   std::vector<lights::ClusterCounter> counters_;  // of directional lights, and of others
   size_t in_view_ = 0;
   bool group_shares_ = false;
-  bool has_area_lights_ = false;
 };
 
 }  // namespace chandelier

@@ -111,6 +111,9 @@ void read_budget(const Typed& typed, Options& options) {
   options.budget.d_init_is_least = typed.d_init.has_value();
   if (typed.d_init && typed.max_error)
     throw UsageError("--max-error: cannot be used with --d-init, whose place it takes");
+  if (typed.d_init && std::any_of(options.recipes.begin(), options.recipes.end(),
+                                  [](const NamedRecipe& each) { return each.recipe.select == Select::error_driven; }))
+    throw UsageError(fmt::format("{}: cannot be used with --d-init where lights are selected by error", option));
   if (std::none_of(options.recipes.begin(), options.recipes.end(),
                    [](const NamedRecipe& each) { return each.recipe.select != Select::per_light; }))
     throw UsageError(fmt::format("{}: needs light clusters, such as --preset lightcluster", option));

@@ -22,10 +22,6 @@ RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe) 
           .visibility_bytes = most_visibility_bytes};
 }
 
-float aspect_of(const RenderSettings& settings) {
-  return static_cast<float>(settings.width) / static_cast<float>(settings.height);
-}
-
 }  // namespace
 
 Predictor::Predictor(const pack::View& pack) : pack_(pack), surroundings_(pack) {

@@ -25,7 +25,7 @@ constexpr const char* footer = R"(Input, every part optional:
               "color": [[1, 1, 1], [1, 0.8, 0.6]],         linear [white]
               "range_m": [6, null],                        null or 0: as chandelier-bake derives it [all null]
               "spot_outer_rad": [0, 0.6],                  half angle [0.7854]
-              "radius_m": [0.1, 0],                        lights with one are never drawn hard [0]
+              "radius_m": [0.1, 0],                        of what shines; a spot's softness adds cube faces [0]
               "dynamic": [false, true], "cluster": [true, true], "shadow": [true, true], "priority": [128, 200],
               "group": [-1, -1]},                          lights of the same number share one map [-1: of none]
    "settings": {"select": "light-clusters", "filter": "pcss", "d_init_m": 0.5, "z_far_m": 30, "distance_scaling": "grow",
@@ -34,7 +34,7 @@ constexpr const char* footer = R"(Input, every part optional:
    "camera": {"eye_ws": [0, 1.7, 5], "forward_ws": [0, 0, -1], "up_ws": [0, 1, 0], "yfov_rad": 0.9, "znear_m": 0.05,
               "size_px": [1280, 720]}}                     without forward_ws every light is in view
 
-Output: center_of_light (null out of view), range_of_light_m, over_budget (the lights that lose a map of their own),
+Output: center_of_light (null out of view and without shadow), range_of_light_m, over_budget (the lights that lose a map of their own),
 clusters (center, light_count, d_min_m, range_m, spread_m) and bill (lights_in_view, shadow_maps, shadow_views,
 shadow_bytes, d_init_m, ...). What needs geometry is not told: triangles, walls, selection by error.
 

@@ -83,6 +83,8 @@ TEST_F(ShadowlessTest, LightShinesThroughEverything) {
   EXPECT_EQ(without.stats.shadow_maps, 0u);
   EXPECT_EQ(without.stats.shadow_rounds, 0u);
   EXPECT_EQ(without.stats.shadow_bytes, 0u);
+  const Recipe rays = recipe_with(Select::per_light, Filter::rays, Deliver::textures, Lookup::tiles);
+  EXPECT_EQ(frame(pack, rays).picture.radiance, expected.radiance);
 }
 
 // Whatever the answers, a picture is the sum of what lights with and lights without shadow make of it.

@@ -100,6 +100,8 @@ pack::Contents mixed_lights(uint32_t seed) {
     light.intensity = 1.0f;
     light.position_ws *= 1.0f + static_cast<float>(random() % 4);
     if (random() % 8 == 0) light.group = 1 + random() % 2;
+    if (random() % 8 == 0) light.shadowless = 1;
+    if (random() % 8 == 0) light.radius_m = 0.1f;
     if (random() % 9 == 0) light.type = pack::LightType::directional;
     if (light.type == pack::LightType::directional || random() % 2 == 0) continue;
     light.type = pack::LightType::spot;
@@ -306,6 +308,46 @@ TEST(Prediction, TheReferencesPathIsNotTakenWhereAGroupSharesAMap) {
   EXPECT_EQ(stats.reference_path, 0u);
   EXPECT_EQ(stats.shadow_maps, 19u);
   EXPECT_EQ(stats.centers[3], stats.centers[17]);
+}
+
+// It is hard; a light with a radius, in view or not, keeps the filter that was asked for.
+TEST(Prediction, TheReferencesPathKeepsLightsWithARadiusSoft) {
+  pack::Contents pack = lights_in_a_box(20, 6);
+  const pack::View view = pack::view_of(pack);
+  Predictor predictor(view);
+  RenderSettings settings = clustered(DistanceScaling::grow);
+  settings.recipe.d_init_m = 0.0f;
+  settings.recipe.filter = Filter::pcss;
+  EXPECT_EQ(predictor.plan(settings).plan.recipe.filter, Filter::hard);
+  pack.lights[3].radius_m = 0.05f;
+  for (const float away_m : {0.0f, 1e4f}) {
+    pack.lights[3].position_ws.z += away_m;
+    const Prediction soft = predictor.plan(settings);
+    EXPECT_EQ(soft.stats.reference_path, 1u);
+    EXPECT_EQ(soft.plan.recipe.filter, Filter::pcss);
+    EXPECT_EQ(soft.plan.recipe.select, Select::per_light);
+  }
+  pack.lights[3].shadowless = 1;
+  EXPECT_EQ(predictor.plan(settings).plan.recipe.filter, Filter::hard);
+}
+
+// What sharing a map adds to it is.
+TEST(Prediction, ARadiusThatItsAuthorGaveIsNoError) {
+  pack::Contents pack = posts_on_a_floor();
+  const pack::View view = pack::view_of(pack);
+  Predictor predictor(view);
+  RenderSettings settings = small_picture();
+  settings.recipe.filter = Filter::pcss;
+  settings.recipe.select = Select::per_light;
+  const double hard = predictor.expected_rmse(settings, predictor.plan(settings).plan);
+  settings.recipe.select = Select::light_clusters;
+  settings.recipe.d_init_m = 1.7f;
+  const double shared = predictor.expected_rmse(settings, predictor.plan(settings).plan);
+  for (pack::Light& light : pack.lights) light.radius_m = 0.2f;
+  EXPECT_GT(predictor.expected_rmse(settings, predictor.plan(settings).plan), 0.5 * shared);
+  settings.recipe.select = Select::per_light;
+  EXPECT_EQ(predictor.expected_rmse(settings, predictor.plan(settings).plan), hard);
+  EXPECT_GT(shared, 2 * hard);
 }
 
 TEST(Prediction, CountsLightsMapsAndViews) {

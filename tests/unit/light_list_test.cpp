@@ -135,7 +135,9 @@ TEST(LightListTest, AMapsLightIsAsLargeAsTheLargestOfItsLights) {
   lights[1].radius_m = 0.4f, lights[2].radius_m = 0.01f, lights[3].radius_m = 0.02f;
   EXPECT_TRUE(select_lights(lights, {}, {}, 1.0f).has_area_lights);
   EXPECT_EQ(radii({}), (std::vector<float>{0.0f, 0.4f, 0.01f, 0.02f * 30.0f}));
-  EXPECT_EQ(radii(clustering(0.5f)), (std::vector<float>{0.4f, 0.3f * 0.5f, 0.02f * 30.0f}));
+  EXPECT_EQ(radii(clustering(0.5f)), (std::vector<float>{0.4f, 0.01f, 0.02f * 30.0f}));
+  lights[1].radius_m = lights[2].radius_m = 0.0f;  // d_min's disc, shared or alone
+  EXPECT_EQ(radii(clustering(0.5f)), (std::vector<float>{0.3f * 0.5f, 0.3f * 0.5f, 0.02f * 30.0f}));
 }
 
 // The first of two equals is the centre, unless the other was; numbers are those of the pack, not of what is in view.

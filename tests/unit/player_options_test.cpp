@@ -222,6 +222,8 @@ TEST(PlayerOptions, BudgetsChooseDInit) {
   EXPECT_EQ(least.recipes.at(0).recipe.d_init_m, 1.0f);
   expect_refused("scene.chandelier --preset lightcluster --d-init 1 --max-shadow-bytes 24 --max-error 0.1",
                  "--max-error: cannot be used with --d-init");
+  expect_refused("scene.chandelier --preset chandelier --d-init 1 --max-shadow-maps 9",
+                 "--max-shadow-maps: cannot be used with --d-init where lights are selected by error");
   expect_refused("scene.chandelier --output a.png --preset lightcluster --max-shadow-maps 0", "--max-shadow-maps");
 }
 

@@ -36,7 +36,8 @@ float cascade_pcf(CascadeDisc disc, float radius_m) {
 float pcf_visibility(ShadowMap map, vec3 p, vec3 n, mat2x3 axes) {
   if (map.is_directional != 0u) {
     ShadowView cascade = views[cascade_at(map, p)];
-    return cascade_pcf(cascade_disc(cascade, p, n, axes), SMOOTHING_TEXELS * cascade.texel_m);
+    float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
+    return cascade_pcf(cascade_disc(cascade, p, n, axes), cascade_radius_m);
   }
   float radius_m = pcf_radius(map, p);
   return cube_pcf(cube_disc(map, p, n, axes, radius_m), radius_m);

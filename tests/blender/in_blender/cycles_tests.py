@@ -134,7 +134,10 @@ class Cornell(BlenderCase):
         for lamp in self.lamps:
             lamp.data.shadow_soft_size = 0.1
         self.lamps[0].data.use_shadow = False
-        pictures = {"soft_truth": self.ours(preset="truth"), "soft_pcss": self.ours("--filter", "pcss")}
+        self.scene.chandelier.d_init, self.scene.chandelier.face_size = 0.1, 1024
+        played = part("handover").play_command(self.scene)[1:]  # as Play asks for it
+        played = self.compare.without(played, "--preset", "--camera", "--face-size")
+        pictures = {"soft_truth": self.ours(preset="truth"), "soft_played": self.ours(*played, preset="lightcluster")}
         self.make_lambertian()
         cycles = self.converged(samples=64)
         for name, picture in pictures.items():
