@@ -71,7 +71,7 @@ typedef struct ChandelierPreviewSettings {
   uint32_t face_size_px;
   float d_init_m;
   float z_far_m;
-  float reference_share;    /* from so many clusters per light on, a hard map per light is drawn; above 1: never */
+  float reference_share;    /* from so many clusters per light on, a map per light is drawn; above 1: never */
   float range_threshold_lx; /* of the bake: where a light ends that has no range */
   uint64_t max_shadow_maps; /* budgets; 0: none */
   uint64_t max_shadow_bytes;
@@ -108,7 +108,7 @@ typedef struct ChandelierPreviewBill {
   uint64_t wanted_shadow_bytes;
   uint32_t lights_over_budget;
   float d_init_m;          /* as used: the settings' own where it keeps the budget, else the smallest that does */
-  uint32_t reference_path; /* 1: clusters are nearly as many as lights: a hard map per light is drawn */
+  uint32_t reference_path; /* 1: clusters are nearly as many as lights: a map per light is drawn */
   uint32_t over_budget;    /* 1: the settings' d_init is */
   uint32_t misses_budget;  /* 1: no d_init keeps it; the largest tried is taken */
   uint32_t reserved;       /* 0 */
