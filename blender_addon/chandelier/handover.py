@@ -58,15 +58,23 @@ class Handover:
                 self.done = "Baked"
                 if self.play_after or self.player:
                     self.play(self.play_command, anew=False)
-        elif self.player and not self.player.is_running():
-            self.error, self.player = self.player.error or self.error, None
+        elif self.player:
+            has_ended = not self.player.is_running()
+            self._take_warnings()
+            if has_ended:
+                self.error, self.player = self.player.error or self.error, None
         return self.bake is not None or self.player is not None
+
+    def _take_warnings(self):
+        """What the player has said since."""
+        said, self.player.warnings = self.player.warnings, []
+        self.notes += [note for note in dict.fromkeys(said) if note not in self.notes]
 
     def play(self, command, anew=True):
         """Starts the player. An open one shows what takes its pack's place by itself: where its command is the same it may stay."""
         try:
             command = [tools.find("chandelier-play", tool_folders()), *command]
-            if self.player and self.player.command == command and not anew:
+            if self.player and self.player.command == command and not anew and self.player.is_running():
                 return
             self.close_player()
             self.player = tools.Job(command)

@@ -207,14 +207,14 @@ class Play(HandoverCase):
         self.ended()
         self.assertIn("no display", self.handover.error)
 
-    def bake_and_play(self):
+    def bake_and_play(self, says=""):
         """With a player that writes down how it was started, and goes on until it is ended."""
         programs = self.folder / "programs"
         programs.mkdir()
         (programs / "chandelier-bake").symlink_to(BIN / "chandelier-bake")
         self.told = self.folder / "told"
         program = programs / "chandelier-play"
-        program.write_text(f'#!/bin/sh\necho "$@" >> "{self.told}"\nexec sleep 60\n')
+        program.write_text(f'#!/bin/sh\necho "$@" >> "{self.told}"\n{says}\nexec sleep 60\n')
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
         self.use_tools(programs)
         self.addCleanup(self.handover.close_player)
@@ -254,6 +254,37 @@ class Play(HandoverCase):
         self.assertIsNot(self.handover.player, player)
         self.assertFalse(player.is_running())
         self.starts(2)
+
+    def test_a_player_that_has_just_died_is_started_again(self):
+        self.bake_and_play()
+        self.starts(1)
+        self.handover.player.process.kill()
+        self.handover.player.process.wait()
+        bpy.ops.chandelier.bake()
+        self.starts(2)
+
+    def test_the_players_warnings_are_shown_as_they_come_and_once(self):
+        again = self.folder / "again"
+        warns = "echo 'chandelier-play: warning: the older one stays' >&2\n"
+        self.bake_and_play(f'{warns}{warns}while [ ! -e "{again}" ]; do sleep 0.01; done\n{warns}')
+        self.starts(1)
+        notes = self.noted()
+        self.assertEqual(notes.count("the older one stays"), 1, notes)
+        self.assertTrue(self.handover.player.is_running())
+        self.handover.notes = []  # as the next bake leaves them
+        self.handover.poll()
+        self.assertEqual(self.handover.notes, [])
+        again.touch()
+        self.assertEqual(self.noted(), ["the older one stays"])
+
+    def noted(self):
+        """What the panel shows when the player has warned."""
+        for _ in range(500):
+            self.handover.poll()
+            if "the older one stays" in self.handover.notes:
+                break
+            time.sleep(0.01)
+        return self.handover.notes
 
     def test_it_takes_the_maps_that_the_preview_says(self):
         settings, render = self.scene.chandelier, self.scene.render
