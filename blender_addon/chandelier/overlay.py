@@ -68,7 +68,7 @@ class Overlay:
         self.draw_batches(context)
 
     def build(self, table, selection, settings, selected):
-        colours = shapes.light_colours(selection.center, selection.over_budget, table.names)
+        colours = shapes.light_colours(selection.center, selection.over_budget, table.names, table.flags)
         centers = selection.clusters["center"].astype(np.int64)
         drawn = []
         if settings.links:

@@ -1,24 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
+import colorsys
+
 import numpy as np
 import pytest
 
+import core.light_table as light_table
 import core.shapes as shapes
 
 POSITION = np.array([(0, 0, 0), (1, 0, 0), (0, 2, 0), (5, 5, 5)], np.float32)
 CENTER = np.array([0, 0, 2, -1])
 NAMES = ["a", "b", "c", "d"]
+PLAIN = np.zeros(4, np.uint8)  # flags
 
 
 def test_members_have_their_centres_colour_and_others_another():
-    colours = shapes.light_colours(CENTER, np.zeros(4, bool), NAMES)
+    colours = shapes.light_colours(CENTER, np.zeros(4, bool), NAMES, PLAIN)
     assert (colours[0] == colours[1]).all()
     assert (colours[0] != colours[2]).any()
     assert colours[3] == pytest.approx(shapes.OUT_OF_VIEW)
 
 
 def test_over_budget_is_red_whatever_the_cluster():
-    colours = shapes.light_colours(CENTER, np.array([False, True, False, False]), NAMES)
+    colours = shapes.light_colours(CENTER, np.array([False, True, False, False]), NAMES, PLAIN)
     assert colours[1] == pytest.approx(shapes.OVER_BUDGET)
+
+
+def test_without_a_shadow_is_another_colour_than_out_of_view_and_than_any_cluster():
+    flags = np.array([0, 0, light_table.NO_SHADOW, light_table.NO_SHADOW | light_table.DYNAMIC], np.uint8)
+    colours = shapes.light_colours(np.array([0, -1, -1, -1]), np.zeros(4, bool), NAMES, flags)
+    assert colours[0] == pytest.approx(shapes.colour_of("a"))
+    assert colours[1] == pytest.approx(shapes.OUT_OF_VIEW)
+    for light in (2, 3):
+        assert colours[light] == pytest.approx(shapes.WITHOUT_SHADOW)
+    pale = colorsys.rgb_to_hsv(*shapes.WITHOUT_SHADOW[:3])[1]
+    assert all(colorsys.rgb_to_hsv(*shapes.colour_of(f"lamp {number}")[:3])[1] > pale + 0.15 for number in range(500))
 
 
 def test_no_cluster_is_as_red_as_what_is_over_budget():
@@ -33,7 +48,7 @@ def test_names_that_differ_in_a_digit_differ_in_colour():
 
 
 def test_links_go_from_members_to_centres_only():
-    colours = shapes.light_colours(CENTER, np.zeros(4, bool), NAMES)
+    colours = shapes.light_colours(CENTER, np.zeros(4, bool), NAMES, PLAIN)
     lines = shapes.links(POSITION, CENTER, colours)
     assert lines.ends.tolist() == [[1, 0, 0], [0, 0, 0]]
     assert lines.colours.shape == (2, 4)
@@ -64,7 +79,7 @@ def test_each_light_has_its_own_centres_colour():
     rng = np.random.default_rng(1)
     center = rng.integers(-1, 40, 300)
     names = [f"lamp {i}" for i in range(300)]
-    colours = shapes.light_colours(center, np.zeros(300, bool), names)
+    colours = shapes.light_colours(center, np.zeros(300, bool), names, np.zeros(300, np.uint8))
     for light, number in enumerate(center):
         expected = shapes.colour_of(names[number]) if number >= 0 else shapes.OUT_OF_VIEW
         assert colours[light] == pytest.approx(expected)

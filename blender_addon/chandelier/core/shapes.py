@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .light_table import NO_SHADOW
+
 CIRCLE_SEGMENTS = 48
 LEAST_SEGMENTS = 12
 MOST_FINE_SPHERES = 250  # with more, each gets fewer segments
 OUT_OF_VIEW = (0.45, 0.45, 0.45, 0.6)
+WITHOUT_SHADOW = (1.0, 0.95, 0.65, 0.8)  # paler than any cluster's
 OVER_BUDGET = (1.0, 0.08, 0.05, 1.0)
 AXES = ((0, 1), (1, 2), (2, 0))  # planes of the three circles that stand for a sphere
 
@@ -29,10 +32,12 @@ def colour_of(name):
     return (*colorsys.hsv_to_rgb(hue, 0.55 + 0.3 * (number >> 15 & 1), 0.8 + 0.2 * (number >> 14 & 1)), 1.0)
 
 
-def light_colours(center, over_budget, names):
-    """(n, 4): the cluster's colour, red where the budget takes a light's own map, grey out of view."""
+def light_colours(center, over_budget, names, flags):
+    """(n, 4): the cluster's colour, red where the budget takes a light's own map, pale yellow where a light throws no shadow
+    (`flags`: the table's), grey where it is out of view."""
     colours = np.empty((len(center), 4), np.float32)
     colours[:] = OUT_OF_VIEW
+    colours[(flags & NO_SHADOW) != 0] = WITHOUT_SHADOW
     in_view = center >= 0
     numbers, which = np.unique(center[in_view], return_inverse=True)
     if len(numbers):

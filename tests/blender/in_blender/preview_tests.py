@@ -263,6 +263,9 @@ class Preview(BlenderCase):
                 began = time.perf_counter()
                 selection = preview.PREVIEW.update(bpy.context)
                 times.append(1000 * (time.perf_counter() - began))
-            self.assertLessEqual(selection.bill.shadow_maps, maps or 251)
+            if maps:
+                self.assertIn(selection.bill.shadow_maps, range(maps // 2 + 1, maps + 1))  # a budget is there to be used
+            else:
+                self.assertEqual(selection.bill.shadow_maps, 251)
             self.assertEqual(selection.bill.over_budget, maps > 0)
             print(f"2,000 lights, budget of {maps or 'no'} maps, one moved: {sorted(times)[5]:.1f} ms an update, median of 10")
