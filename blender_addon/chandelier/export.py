@@ -2,6 +2,7 @@
 """Export through Blender's own glTF exporter, and a look at what it has written."""
 
 import contextlib
+import math
 import os
 import pathlib
 
@@ -30,16 +31,31 @@ def export(context, path):
     with writing(path):
         pathlib.Path(written).write_bytes(b"")  # the exporter takes many words to say why it cannot
         os.unlink(written)  # else it would pass for what was written now
+    unkeyed = put_back(context)
     try:
         run_exporter(context, path, filepath=written, **{name: value for name, value in WANTED.items() if name in known})
         if not os.path.exists(written):
             raise RuntimeError(f"{path}: the exporter wrote nothing")
         check = gltf_check.check(written, scene_lights.read(context.evaluated_depsgraph_get()))
+        check.errors += [f"{name}: was moved without a keyframe, and went back to its animation's place, which is exported"
+                         for name in unkeyed]
         with writing(path):
             os.replace(written, path)
         return check
     finally:
         pathlib.Path(written).unlink(missing_ok=True)
+
+
+def put_back(context):
+    """Sets the frame anew, as the exporter does, so that it, the file and the check see one scene. The names of lights that were
+    elsewhere, as a change without a keyframe lasts until the next frame."""
+    scene = context.scene
+    before = scene_lights.read(context.evaluated_depsgraph_get())
+    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+    after = scene_lights.read(context.evaluated_depsgraph_get())
+    places = dict(zip(after.names, after.position.tolist()))
+    return [name for name, place in zip(before.names, before.position.tolist())
+            if math.dist(place, places.get(name, place)) > gltf_check.NEAR_M]
 
 
 @contextlib.contextmanager

@@ -342,6 +342,22 @@ class Baked(GltfCase):
         ((baked,),) = self.baked().values()
         self.assertTrue(baked["dynamic"])
 
+    def test_an_unkeyed_move_of_a_keyframed_light_is_named(self):
+        light, other = self.lamp("Moving"), self.lamp("Still", location=(0, 5, 0))
+        self.scene.frame_end = 20
+        for frame in (1, 20):
+            light.location.x = frame
+            light.keyframe_insert("location", frame=frame)
+        self.scene.frame_set(8)
+        light.location.y = 3
+        other.location.y = 7
+        bpy.context.view_layer.update()
+        check = part("export").export(bpy.context, str(self.path))
+        self.assertEqual(check.errors, [
+            "Moving: was moved without a keyframe, and went back to its animation's place, which is exported"])
+        self.assertEqual((light.location.y, other.location.y), (0, 7))
+        self.assertEqual(self.export().errors, [])
+
     def test_what_is_not_rendered_is_not_exported(self):
         self.lamp("Shown")
         self.lamp("Hidden").hide_render = True
