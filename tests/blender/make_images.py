@@ -13,7 +13,7 @@ from PIL import Image
 import window_tool
 
 IMAGES = window_tool.HERE.parents[1] / "blender_addon" / "images"
-SCREEN = (1440, 1290)  # all panels are seen
+SCREEN = (1440, 1500)  # all panels are seen
 COLOURS = 256  # of a screenshot: an eighth of the bytes, and no difference to see
 SHADED = ("09_play", "10_cycles", "cornell_cycles")  # too smooth for that
 
