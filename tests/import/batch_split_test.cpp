@@ -168,8 +168,12 @@ TEST(NormalCone, CullsNoEyeThatSeesAFront) {
     }
     const NormalCone cone = normal_cone(corners);
     cones += cone.cutoff < 1;
-    if (cone.cutoff < 1) EXPECT_NEAR(glm::length(cone.axis), 1, 1e-5);
-    if (cone.cutoff == 1) EXPECT_EQ(cone.axis, glm::vec3(0));
+    if (cone.cutoff < 1) {
+      EXPECT_NEAR(glm::length(cone.axis), 1, 1e-5);
+    }
+    if (cone.cutoff == 1) {
+      EXPECT_EQ(cone.axis, glm::vec3(0));
+    }
     for (int e = 0; e < 300; ++e) {
       const glm::vec3 eye =
           at + size * 4.0f * glm::vec3(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1));

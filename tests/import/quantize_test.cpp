@@ -123,7 +123,9 @@ TEST(Quantize, KeepsItsErrorInTheImageWhateverTheTransform) {
     EXPECT_LE(std::max(uv0, uv1), info.uv_error) << scale;
     EXPECT_LE(info.uv_error, 0.5 / 4096 * (1 + 1e-6)) << scale;
     EXPECT_GT(uv0, 0.4 / 4096) << scale;  // which another set's transform makes no finer
-    if (scale == 64) EXPECT_GT(uv1, 0.1 / 4096);
+    if (scale == 64) {
+      EXPECT_GT(uv1, 0.1 / 4096);
+    }
   }
 }
 
