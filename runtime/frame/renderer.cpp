@@ -45,6 +45,11 @@ struct Streamed {
   }
 };
 
+// As uploaded.
+size_t light_count(const FramePlan& plan) {
+  return plan.list.lights.size() + plan.list.shadowless.size();
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -98,11 +103,6 @@ struct Renderer::Impl {
   void draw_by_rays(const RenderSettings& settings, const FramePlan& plan);
   FrameStats read_stats(const RenderSettings& settings, const FramePlan& plan);
 };
-
-// As uploaded.
-size_t light_count(const FramePlan& plan) {
-  return plan.list.lights.size() + plan.list.shadowless.size();
-}
 
 FramePlan Renderer::Impl::plan(const RenderSettings& settings) {
   const uint64_t batch_instances = std::max(1u, scene.batch_instance_count);

@@ -34,9 +34,9 @@ constexpr const char* footer = R"(Input, every part optional:
    "camera": {"eye_ws": [0, 1.7, 5], "forward_ws": [0, 0, -1], "up_ws": [0, 1, 0], "yfov_rad": 0.9, "znear_m": 0.05,
               "size_px": [1280, 720]}}                     without forward_ws every light is in view
 
-Output: center_of_light (null out of view and without shadow), range_of_light_m, over_budget (the lights that lose a map of their own),
-clusters (center, light_count, d_min_m, range_m, spread_m) and bill (lights_in_view, shadow_maps, shadow_views,
-shadow_bytes, d_init_m, ...). What needs geometry is not told: triangles, walls, selection by error.
+Output: center_of_light (null out of view and without shadow), range_of_light_m, over_budget (the lights that lose a
+map of their own), clusters (center, light_count, d_min_m, range_m, spread_m) and bill (lights_in_view, shadow_maps,
+shadow_views, shadow_bytes, d_init_m, ...). What needs geometry is not told: triangles, walls, selection by error.
 
 Examples:
   chandelier-lights lights.json
