@@ -46,6 +46,14 @@ class BlenderCase(unittest.TestCase):
             setattr(data, key, value)
         return self.add(name, data, location, collection)
 
+    def leave_as_library(self):
+        """Saves everything, and begins an empty scene. The file."""
+        path = str(self.folder / "library.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.read_homefile(use_empty=True)
+        self.scene = bpy.context.scene
+        return path
+
     def link_library(self, *lights):
         """Saves these lights as a library's collection, and links it into an empty scene."""
         collection = bpy.data.collections.new("Library")
@@ -53,10 +61,7 @@ class BlenderCase(unittest.TestCase):
         for light in lights:
             self.scene.collection.objects.unlink(light)
             collection.objects.link(light)
-        path = str(self.folder / "library.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-        bpy.ops.wm.read_homefile(use_empty=True)
-        self.scene = bpy.context.scene
+        path = self.leave_as_library()  # first: it makes bpy.data anew
         with bpy.data.libraries.load(path, link=True) as (_, target):
             target.collections = ["Library"]
         return target.collections[0]

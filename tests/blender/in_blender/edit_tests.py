@@ -22,10 +22,7 @@ class LightsCase(BlenderCase):
 
     def library(self):
         """An object of this scene whose light another file owns."""
-        path = str(self.folder / "library.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-        bpy.ops.wm.read_homefile(use_empty=True)
-        self.scene = bpy.context.scene
+        path = self.leave_as_library()  # first: it makes bpy.data anew
         with bpy.data.libraries.load(path, link=True) as (_, target):
             target.lights = ["One"]
         return self.add("Local", target.lights[0])
