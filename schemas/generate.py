@@ -27,9 +27,10 @@ TYPES = {
     "vec2": ("glm::vec2", "vec2", "<f4", 8, 4, 2),
     "vec3": ("glm::vec3", "vec3", "<f4", 12, 4, 3),
     "vec4": ("glm::vec4", "vec4", "<f4", 16, 4, 4),
+    "dvec3": ("glm::dvec3", None, "<f8", 24, 8, 3),
     "string": ("StringRef", "StringRef", None, 8, 4, 1),
 }
-FLOATS = {"f32", "vec2", "vec3", "vec4"}
+FLOATS = {"f32": "f32", "vec2": "f32", "vec3": "f32", "vec4": "f32", "dvec3": "f64"}  # type: that of a component
 ATTRIBUTES = {
     "schema": {"name", "namespace", "version"},
     "constant": {"name", "type", "value"},
@@ -213,8 +214,9 @@ class Section:
 
 
 def number_literal(kind, text):
-    """What C++ and GLSL read as that type: 0.01 -> 0.01f, 7 -> 7u."""
-    return {"u8": text + "u", "u32": text + "u", "u64": text + "ull"}.get(kind) or f"{float(text)!r}f"
+    """What C++ and GLSL read as that type: 0.01 -> 0.01f, 7 -> 7u; f64 is a double."""
+    return {"u8": text + "u", "u32": text + "u", "u64": text + "ull"}.get(kind) or (
+        f"{float(text)!r}" + ("f" if kind == "f32" else ""))
 
 
 class Check:
@@ -234,8 +236,10 @@ def field_checks(field, records, prefix, path_prefix=""):
             for inner in records["StringRef"].fields:
                 checks += field_checks(inner, records, value, f"{path}.")
         elif field.type in FLOATS:
-            low = "lowest" if field.min is None else number_literal("f32", field.min)
-            high = "highest" if field.max is None else number_literal("f32", field.max)
+            kind = FLOATS[field.type]
+            cpp = {"f32": "float", "f64": "double"}[kind]
+            low = f"lowest<{cpp}>" if field.min is None else number_literal(kind, field.min)
+            high = f"highest<{cpp}>" if field.max is None else number_literal(kind, field.max)
             for component in "xyzw"[:field.components] if field.components > 1 else [""]:
                 dot = "." + component if component else ""
                 args = f"{value}{dot}, {low}, {high}"

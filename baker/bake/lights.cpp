@@ -61,6 +61,7 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
       out.inner_cone_cos = std::cos(light.inner_cone_rad);
       out.outer_cone_cos = std::cos(light.outer_cone_rad);
     }
+    out.nearest_caster_m = out.range_m;
     const FloatSphere bounds = rounded_outwards(light_bounds(out));
     out.bounds_center_ws = bounds.center;
     out.bounds_radius_m = bounds.radius;

@@ -14,7 +14,7 @@ import xxhash
 PAGE = ET.parse(Path(os.environ["CHANDELIER_SCHEMAS"]) / "pack.xml").getroot()
 RECORDS = {r.get("name"): r.findall("field") for r in PAGE.findall("record")}
 ENUMS = {e.get("name"): len(e.findall("value")) for e in PAGE.findall("enum")}
-FLOATS = {"f32", "vec2", "vec3", "vec4"}
+FLOATS = {"f32", "vec2", "vec3", "vec4", "dvec3"}
 
 
 def bad_values(field, lengths):
@@ -51,7 +51,7 @@ def ruled_fields(record):
 
 def scalars(field):
     """(path, index) of every scalar of a field in a section's first record."""
-    axes = {"vec2": "xy", "vec3": "xyz", "vec4": "xyzw"}.get(field.get("type"), "")
+    axes = {"vec2": "xy", "vec3": "xyz", "dvec3": "xyz", "vec4": "xyzw"}.get(field.get("type"), "")
     for element in range(int(field.get("count", "1"))):
         array = field.get("count") is not None
         path, at = f"[{element}]" if array else "", (0, element) if array else (0,)

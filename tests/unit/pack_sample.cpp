@@ -32,8 +32,8 @@ void add_vertices(Contents& c) {
 /// The triangles stand on the left and on the right, the banner between them.
 void add_instances(Contents& c) {
   const StringRef left = add_string(c, "left"), right = add_string(c, "right");
-  c.instances.push_back({{{{1, 0, 0, -2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0, 0, none, none, left});
-  c.instances.push_back({{{{1, 0, 0, 2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0, 0, none, none, right});
+  c.instances.push_back({{{{1, 0, 0, -2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0, 0, 0, none, none, left});
+  c.instances.push_back({{{{1, 0, 0, 2}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0, 0, 1, none, none, right});
   c.batch_instances = {{{-2, 0, 0}, 0, {-1, 1, 0}, 0},
                        {{2, 0, 0}, 0, {3, 1, 0}, 1},
                        {{-2, 0, -0.5f}, 1, {-1, 1, 0}, 0},
@@ -41,6 +41,7 @@ void add_instances(Contents& c) {
                        {{0.5f, 0, 0}, 2, {1, 0.5f, 0}, 2}};
   c.bake_info.bounds_min_ws = {-2, 0, -0.5f};
   c.bake_info.bounds_max_ws = {3, 1, 0};
+  c.bake_info.origin_m = {1e6, -0.1, 250000.5};
   c.bake_info.unique_triangles = 3;
   c.bake_info.instanced_triangles = 5;
   c.bake_info.batch_triangles = 100;
@@ -61,7 +62,8 @@ void add_materials(Contents& c) {
   Material leaf = stone;
   leaf.alpha_mode = AlphaMode::mask;
   leaf.alpha_cutoff = 0.5f;
-  leaf.double_sided = 1;
+  leaf.double_sided = leaf.shadowless = 1;
+  leaf.transmission_factor = 0.25f;
   leaf.name = add_string(c, "Blätter");
   c.materials = {stone, leaf};
   c.textures = {
@@ -83,6 +85,7 @@ void add_lights(Contents& c) {
   point.outer_cone_cos = -1;
   point.bounds_center_ws = point.position_ws;
   point.bounds_radius_m = 7;
+  point.nearest_caster_m = 0.75f;
   point.priority = 128;
   point.group = 1;
   point.name = add_string(c, "bulb");
@@ -103,7 +106,7 @@ void add_lights(Contents& c) {
   Light sun = point;
   sun.type = LightType::directional;
   sun.position_ws = sun.bounds_center_ws = {0, 0, 0};
-  sun.range_m = sun.bounds_radius_m = 0;
+  sun.range_m = sun.bounds_radius_m = sun.nearest_caster_m = 0;
   sun.intensity = 1000;
   sun.range_source = RangeSource::unbounded;
   sun.dynamic = sun.unclustered = 1;
@@ -170,7 +173,7 @@ void add_motion(Contents& c) {
   c.nodes.push_back(
       {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, {0, 0, 0}, no_rotation, {1, 1, 1}, 0, add_string(c, "cloth")});
   const StringRef banner = add_string(c, "banner");
-  c.instances.push_back({{{{1, 0, 0, 0.5f}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1, 1, 1, 0, banner});
+  c.instances.push_back({{{{1, 0, 0, 0.5f}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1, 1, 0, 1, 0, banner});
   c.skins.push_back({0, 2, banner});
   c.joints = {{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0}, {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1}};
   for (std::uint32_t i = 0; i < 3; ++i) {
