@@ -5,16 +5,16 @@ import textwrap
 
 import bpy
 
-from . import scene_lights
+from . import place, scene_lights
 from .core import surprises
 from .handover import handover, pack_path
 from .preview import bill_lines
 
 NAMES_SHOWN = 6  # of lights with the same surprise
 CHARACTER_PX = 7  # about, of a label at the scale 1
-PLACES = (("chandelier.place_along_curve", "CURVE_DATA"), ("chandelier.place_around", "MESH_CIRCLE"),
-          ("chandelier.place_on_mesh", "MESH_DATA"), ("chandelier.scatter", "STICKY_UVS_DISABLE"),
-          ("chandelier.place_at_selected", "EMPTY_AXIS"))
+PLACES = ((place.CHANDELIER_OT_place_along_curve, "CURVE_DATA"), (place.CHANDELIER_OT_place_around, "MESH_CIRCLE"),
+          (place.CHANDELIER_OT_place_on_mesh, "MESH_DATA"), (place.CHANDELIER_OT_scatter, "STICKY_UVS_DISABLE"),
+          (place.CHANDELIER_OT_place_at_selected, "EMPTY_AXIS"))
 
 
 def wrapped(layout, context, text, icon="NONE"):
@@ -90,7 +90,9 @@ class CHANDELIER_PT_place(Sidebar, bpy.types.Panel):
     def draw(self, context):
         column = self.layout.column(align=True)
         for operator, icon in PLACES:
-            column.operator(operator, icon=icon)
+            row = column.row(align=True)
+            row.enabled = bool(operator.sources(context))
+            row.operator(operator.bl_idname, icon=icon)
 
 
 class CHANDELIER_PT_lights(Sidebar, bpy.types.Panel):

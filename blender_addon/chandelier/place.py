@@ -37,9 +37,13 @@ class Placing:
     share: BoolProperty(
         name="Share Data", description="All have one light data-block, so that one edit changes all", default=False)
 
+    wanted = "an object that is no light"  # what `sources` takes
+
     @classmethod
     def poll(cls, context):
-        return context.mode == "OBJECT" and bool(cls.sources(context))
+        """Says nothing of what is selected: Blender asks again before it adjusts the operator in the redo panel, while the lights
+        that it placed are still there and selected instead."""
+        return context.mode == "OBJECT"
 
     @classmethod
     def sources(cls, context):
@@ -49,6 +53,9 @@ class Placing:
     def execute(self, context):
         rng = np.random.default_rng(self.seed)
         sources = self.sources(context)
+        if not sources:
+            self.report({"WARNING"}, f"No light was placed: select {self.wanted} first")
+            return {"CANCELLED"}
         made = []
         for source in sources:
             points, ways = self.places(context, source, rng)
@@ -127,6 +134,7 @@ class CHANDELIER_OT_place_along_curve(Spaced, bpy.types.Operator):
     """Place lights along the selected curves"""
     bl_idname = "chandelier.place_along_curve"
     bl_label = "Along Curves"
+    wanted = "a curve"
 
     @classmethod
     def sources(cls, context):
@@ -166,6 +174,7 @@ class CHANDELIER_OT_place_on_mesh(Sparse, bpy.types.Operator):
     """Place lights on the faces or vertices of the selected meshes"""
     bl_idname = "chandelier.place_on_mesh"
     bl_label = "On Meshes"
+    wanted = "a mesh"
 
     on: EnumProperty(name="On", default="FACES", items=(
         ("FACES", "Faces", "At the middles of faces"), ("VERTICES", "Vertices", "At vertices")))

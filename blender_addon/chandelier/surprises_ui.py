@@ -128,6 +128,8 @@ class OfRule:
         return [thing for thing in context.scene.objects if thing.name_full in named and thing.type == "LIGHT"]
 
     def execute(self, context):
+        if self.rule:
+            find(context)  # adjusted in the redo panel, it works on the scene before it, of which what was found is no more
         lights = [light for light in self.lights(context) if edit.is_editable(light) and edit.is_editable(light.data)]
         self.mend(context, lights)
         find(context)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Operators that place lights, and their undo."""
 
+import contextlib
+import io
 import math
 
 import bpy
@@ -220,14 +222,18 @@ class Place(BlenderCase):
 
     def test_nothing_selected_is_no_place(self):
         self.select()
-        for name in ("place_along_curve", "place_around", "place_on_mesh", "scatter", "place_at_selected"):
-            self.assertFalse(getattr(bpy.ops.chandelier, name).poll(), name)
+        for name, wanted in (("place_along_curve", "a curve"), ("place_around", "an object"), ("place_on_mesh", "a mesh"),
+                             ("scatter", "an object"), ("place_at_selected", "an object")):
+            with contextlib.redirect_stdout(io.StringIO()) as said:
+                self.assertEqual(getattr(bpy.ops.chandelier, name)(), {"CANCELLED"}, name)
+            self.assertIn(f"No light was placed: select {wanted}", said.getvalue())
 
     def test_lights_are_no_place_for_lights(self):
         self.select(self.add_light(), self.add("Empty"))
         bpy.ops.chandelier.place_around(count=4)
         self.assertEqual(len(self.lights()), 5)
-        self.assertFalse(bpy.ops.chandelier.place_around.poll())  # what was placed is selected now
+        self.assertEqual(bpy.ops.chandelier.place_around(count=4), {"CANCELLED"})  # what was placed is selected now
+        self.assertEqual(len(self.lights()), 5)
 
     def test_an_empty_mesh_places_nothing(self):
         self.select(self.add("Nothing", bpy.data.meshes.new("Nothing")))
