@@ -10,7 +10,7 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from . import scene_lights
+from . import scene_lights, shadows, shape_keys
 from .core import gltf_check
 
 WANTED = {
@@ -33,12 +33,16 @@ def export(context, path):
         os.unlink(written)  # else it would pass for what was written now
     unkeyed = put_back(context)
     try:
-        run_exporter(context, path, filepath=written, **{name: value for name, value in WANTED.items() if name in known})
+        with shape_keys.exported_as_seen(context.evaluated_depsgraph_get()) as odd:
+            run_exporter(context, path, filepath=written, **{name: value for name, value in WANTED.items() if name in known})
         if not os.path.exists(written):
             raise RuntimeError(f"{path}: the exporter wrote nothing")
-        check = gltf_check.check(written, scene_lights.read(context.evaluated_depsgraph_get()))
+        depsgraph = context.evaluated_depsgraph_get()
+        check = gltf_check.check(written, scene_lights.read(depsgraph), *shadows.meant(depsgraph))
         check.errors += [f"{name}: was moved without a keyframe, and went back to its animation's place, which is exported"
                          for name in unkeyed]
+        check.errors += [f"{name}: belongs to another file, and the exporter writes its shape keys otherwise than they are seen"
+                         for name in odd]
         with writing(path):
             os.replace(written, path)
         return check

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's glTF exporter calls: writes each light's watts, range and extras.chandelier.
+"""What Blender's glTF exporter calls: writes each light's watts, range and extras.chandelier, and what throws no shadow.
 
 The exporter swallows what is raised here and says that it has finished, so that export.py checks the written file.
 It has no hook for lights; all nodes with the same light share one dict, which is filled again for each of them."""
 
-from . import scene_lights
+from . import scene_lights, shadows
 from .core import photometry
 
 EXTENSION = "KHR_lights_punctual"
@@ -14,10 +14,17 @@ class glTF2ExportUserExtension:
     """Found by this name in the add-on's module."""
 
     def gather_node_hook(self, node, blender_object, export_settings):
-        if blender_object is None or blender_object.type != "LIGHT" or EXTENSION not in (node.extensions or {}):
+        if blender_object is None:
             return
-        light = node.extensions[EXTENSION].extension["light"].extension
-        write_light(light, blender_object.data, export_settings["gltf_lighting_mode"] == "SPEC")
+        if not blender_object.visible_shadow:
+            write_no_shadow(node, blender_object.is_instancer)
+        if blender_object.type == "LIGHT" and EXTENSION in (node.extensions or {}):
+            light = node.extensions[EXTENSION].extension["light"].extension
+            write_light(light, blender_object.data, export_settings["gltf_lighting_mode"] == "SPEC")
+
+    def gather_material_hook(self, material, blender_material, export_settings):
+        if blender_material is not None and not shadows.material_throws(blender_material):
+            material.extras = without_shadow(material.extras)
 
     def gather_scene_hook(self, scene, blender_scene, export_settings):
         """With custom properties exported, our own come along as Blender stores them, which nobody reads."""
@@ -25,6 +32,19 @@ class glTF2ExportUserExtension:
             for name in ("chandelier", "chandelier_overlay"):
                 scene.extras.pop(name, None)
             scene.extras = scene.extras or None
+
+
+def without_shadow(extras):
+    """schemas/shadow_extras.schema.json"""
+    return {**(extras or {}), "chandelier": {"shadow": False}}
+
+
+def write_no_shadow(node, instances):
+    """On a node's mesh; `instances`: and on those of its children, which then are what it instances."""
+    if node.mesh is not None:
+        node.extras = without_shadow(node.extras)
+    for child in (node.children or ()) if instances else ():
+        write_no_shadow(child, instances)
 
 
 def write_light(light, data, is_spec):

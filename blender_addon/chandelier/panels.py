@@ -5,7 +5,7 @@ import textwrap
 
 import bpy
 
-from . import place, scene_lights
+from . import place, scene_lights, shadows
 from .core import surprises
 from .handover import handover, pack_path
 from .preview import bill_lines
@@ -211,6 +211,20 @@ class CHANDELIER_PT_light(Properties, bpy.types.Panel):
             column.prop(cycles, "cast_shadow", text="Cycles")
 
 
+class CHANDELIER_PT_object(Properties, bpy.types.Panel):
+    """Blender shows its own switch only where Cycles renders, and until 4.1 it is Cycles' alone."""
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and (context.object.type in shadows.WITH_SURFACE or context.object.is_instancer)
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.prop(context.object, "visible_shadow", text="Throws a Shadow")
+
+
 class CHANDELIER_PT_scene(Properties, bpy.types.Panel):
     bl_context = "scene"
     bl_options = {"DEFAULT_CLOSED"}
@@ -220,5 +234,5 @@ class CHANDELIER_PT_scene(Properties, bpy.types.Panel):
 
 
 CLASSES = (CHANDELIER_PT_handover, CHANDELIER_PT_place, CHANDELIER_PT_lights, CHANDELIER_PT_clusters, CHANDELIER_PT_shadows, CHANDELIER_PT_surprises,
-           CHANDELIER_PT_light, CHANDELIER_PT_scene)
+           CHANDELIER_PT_light, CHANDELIER_PT_object, CHANDELIER_PT_scene)
 register, unregister = bpy.utils.register_classes_factory(CLASSES)

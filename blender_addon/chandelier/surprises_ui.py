@@ -6,7 +6,7 @@ import numpy as np
 from bpy.props import EnumProperty, FloatProperty, StringProperty
 from mathutils import Matrix, Vector
 
-from . import edit, light_list, motion, scene_lights
+from . import edit, light_list, motion, scene_lights, shadows
 from .core import photometry, surprises
 
 FACES = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1))
@@ -52,18 +52,19 @@ def record_of(meshes, light, matrix, users, hidden, lost_motion):
         has_range=data.use_custom_distance, users=users, scale=scale,
         sheared=bool(abs(unit @ unit.T - np.eye(3)).max() > 1e-3),
         own_nodes=data.use_nodes and (leaves is None or any(socket.is_linked for socket in leaves.inputs)),
-        inside="" if data.type == "SUN" else meshes.around(matrix.translation),
+        inside="" if data.type == "SUN" else " and ".join(thing.name for thing in meshes.around(matrix.translation)),
         hidden=hidden, lost_motion=lost_motion, dynamic=data.chandelier.dynamic)
 
 
 class Meshes:
-    """All that a light may be stuck in, with boxes in the world, so that only what is around a light is looked at."""
+    """All that a light may be stuck in and that throws shadows, with boxes in the world, so that only what is around a light is
+    looked at."""
 
     def __init__(self, depsgraph):
         self.depsgraph, self.placed, boxes = depsgraph, [], []
         for instance in depsgraph.object_instances:
             thing = instance.object
-            if thing.type == "MESH" and not thing.hide_render and len(thing.data.polygons):
+            if thing.type == "MESH" and not thing.hide_render and len(thing.data.polygons) and shadows.placement_throws(instance):
                 matrix = instance.matrix_world.copy()
                 corners = np.array([matrix @ Vector(corner) for corner in thing.bound_box])
                 boxes.append((corners.min(axis=0), corners.max(axis=0)))
@@ -71,21 +72,28 @@ class Meshes:
         self.boxes = np.array(boxes, float).reshape(-1, 2, 3)
 
     def around(self, point):
-        """The name of a mesh that a point is inside of, or nothing."""
+        """The objects that a point is inside of, each once."""
         near = (self.boxes[:, 0] <= point).all(axis=1) & (self.boxes[:, 1] >= point).all(axis=1)
-        return next((self.placed[number][0].name for number in np.flatnonzero(near) if self.is_around(number, point)), "")
+        return list(dict.fromkeys(self.placed[number][0] for number in np.flatnonzero(near) if self.is_around(number, point)))
 
     def is_around(self, number, point):
-        """Whether most rays from the point meet the mesh's back first; in a room, they meet fronts."""
+        """Whether most rays from the point meet the mesh's back first, where light does not pass; in a room, they meet fronts."""
         thing, matrix = self.placed[number]
         evaluated, to_local = thing.evaluated_get(self.depsgraph), matrix.inverted_safe()
         origin, single_sided = to_local @ point, is_single_sided(thing)
         backs = 0
         for way in WAYS:
             way = (to_local.to_3x3() @ way).normalized()
-            hit, place, normal, _ = evaluated.ray_cast(origin, way)
-            backs += hit and normal.dot(way) > 0 and (single_sided or (matrix @ place - point).length < LAMP_M)
+            hit, place, normal, face = evaluated.ray_cast(origin, way)
+            backs += (hit and normal.dot(way) > 0 and (single_sided or (matrix @ place - point).length < LAMP_M)
+                      and not shadows.is_see_through(material_of(evaluated, face)))
         return backs > len(WAYS) / 2
+
+
+def material_of(thing, face):
+    """Of an evaluated mesh's face."""
+    number = thing.data.polygons[face].material_index
+    return thing.material_slots[number].material if number < len(thing.material_slots) else None
 
 
 def is_single_sided(thing):
@@ -205,6 +213,27 @@ class CHANDELIER_OT_set_range(OfRule, bpy.types.Operator):
                 data.cutoff_distance = photometry.range_of(candela, self.illuminance)
 
 
+class CHANDELIER_OT_let_light_out(OfRule, bpy.types.Operator):
+    """Let the meshes that these lights are inside of throw no shadow (Object Properties > Visibility > Ray Visibility > Shadow): right
+    for bulbs and shades"""
+    bl_idname = "chandelier.let_light_out"
+    bl_label = "Let the Mesh Throw No Shadow"
+
+    def execute(self, context):
+        depsgraph = context.evaluated_depsgraph_get()
+        places, meshes = placed_lights(context, depsgraph), Meshes(depsgraph)
+        around = {thing: True for light in self.lights(context) if light in places
+                  for thing in meshes.around(places[light][0].translation)}
+        for thing in around:
+            if edit.is_editable(thing):
+                thing.visible_shadow = False
+                self.report({"INFO"}, f"{thing.name} throws no shadow now")
+            else:
+                self.report({"WARNING"}, f"{thing.name} belongs to another file and keeps its shadow")
+        find(context)
+        return {"FINISHED"} if any(map(edit.is_editable, around)) else {"CANCELLED"}
+
+
 class CHANDELIER_OT_make_single_user(OfRule, bpy.types.Operator):
     """Give each light data of its own"""
     bl_idname = "chandelier.make_single_user"
@@ -228,7 +257,8 @@ class CHANDELIER_OT_mark_dynamic(OfRule, bpy.types.Operator):
 
 
 CLASSES = (CHANDELIER_OT_find_surprises, CHANDELIER_OT_select_surprised, CHANDELIER_OT_convert_area,
-           CHANDELIER_OT_unscale_lights, CHANDELIER_OT_set_range, CHANDELIER_OT_make_single_user, CHANDELIER_OT_mark_dynamic)
+           CHANDELIER_OT_unscale_lights, CHANDELIER_OT_set_range, CHANDELIER_OT_let_light_out, CHANDELIER_OT_make_single_user,
+           CHANDELIER_OT_mark_dynamic)
 register_classes, unregister_classes = bpy.utils.register_classes_factory(CLASSES)
 
 

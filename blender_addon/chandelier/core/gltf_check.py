@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads a written glTF back and compares its lights with those that were meant."""
+"""Reads a written glTF back and compares its lights, and what throws no shadow, with what was meant."""
 
 import json
 import pathlib
@@ -16,7 +16,7 @@ NEAR_M = 1e-3  # places go through decomposed matrices and decimal numbers
 
 @dataclass
 class Check:
-    """One line for each light that came out otherwise than it was meant."""
+    """One line for each light, object and material that came out otherwise than it was meant."""
     errors: list = field(default_factory=list)
     extra: list = field(default_factory=list)  # names of lights that are in the file though nobody expects them
     lights: int = 0
@@ -70,9 +70,28 @@ def to_gltf(vectors):
     return np.stack((vectors[:, 0], vectors[:, 2], -vectors[:, 1]), axis=1).astype(float)
 
 
-def check(path, table):
-    """`table`: the LightTable that was meant."""
-    placed = placed_lights(read_json(path))
+def check_shadows(gltf, objects, materials):
+    """A line for each name of which it is not so; `objects`, `materials`: see shadows.meant."""
+    out = {}
+    for things, meant in (([node for node in gltf.get("nodes", []) if "mesh" in node], objects), (gltf.get("materials", []), materials)):
+        for thing in things:
+            name = thing.get("name", "")
+            written = ((thing.get("extras") or {}).get("chandelier") or {}).get("shadow", True)
+            if meant.get(name) not in (None, written):
+                out[f"{name}: throws {'a' if written else 'no'} shadow in the file, meant was {'none' if written else 'one'}"] = True
+    return list(out)
+
+
+def check(path, table, objects, materials):
+    """`table`: the LightTable that was meant; `objects`, `materials`: which throw shadows, as shadows.meant has it."""
+    gltf = read_json(path)
+    result = check_lights(gltf, table)
+    result.errors += check_shadows(gltf, objects, materials)
+    return result
+
+
+def check_lights(gltf, table):
+    placed = placed_lights(gltf)
     result = Check(lights=len(placed))
     types = np.array([TYPES[light["type"]] for _, _, light in placed], int)
     positions = np.array([matrix[:3, 3] for _, matrix, _ in placed]).reshape(-1, 3)

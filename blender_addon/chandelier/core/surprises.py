@@ -21,7 +21,7 @@ class Light:
     scale: tuple = (1, 1, 1)  # in the world
     sheared: bool = False
     own_nodes: bool = False  # its surface is more than an emission
-    inside: str = ""  # the mesh that it is in
+    inside: str = ""  # the meshes that it is in and that throw shadows
     hidden: bool = False  # in the viewport, but not from renders
     lost_motion: str = ""  # how it changes with time, where that is not exported
     dynamic: bool = False
@@ -87,7 +87,7 @@ LIGHT_RULES = (
          lambda light: light.white and light.kind in ("POINT", "SPOT") and light.power_w in UNTOUCHED_POWERS_W,
          lambda light: f"is white with {light.power_w:g} W, as Blender made it: was it ever set?"),
     Rule("inside", "Inside a mesh", lambda light: bool(light.inside),
-         lambda light: f"is inside {light.inside}, which will keep its light"),
+         lambda light: f"is inside {light.inside}, which will keep its light", "chandelier.let_light_out"),
     Rule("lost_motion", "Motion that is not exported", lambda light: bool(light.lost_motion) and not light.dynamic,
          lambda light: f"is {light.lost_motion}, which is not exported: it stays as it is at this frame, and counts as one that never "
          "moves", "chandelier.mark_dynamic"),

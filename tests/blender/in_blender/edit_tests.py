@@ -291,6 +291,67 @@ class Surprises(BlenderCase):
         text = bpy.context.window_manager.chandelier.surprises[0].text
         self.assertIn("Bulb", text)
 
+    def test_a_bulb_that_throws_no_shadow_is_fine(self):
+        bulb, shade = self.box(0.2), self.box(0.3)
+        bulb.name, shade.name = "Bulb", "Shade"
+        self.good("In both")
+        self.assertEqual(self.found(), [("inside", "In both")])
+        self.assertIn("is inside Bulb and Shade", bpy.context.window_manager.chandelier.surprises[0].text)
+        bulb.visible_shadow = False
+        self.found()
+        self.assertIn("is inside Shade,", bpy.context.window_manager.chandelier.surprises[0].text)
+        shade.visible_shadow = False
+        self.assertEqual(self.found(), [])
+
+    def test_a_remedy_lets_the_light_out(self):
+        bulb, shade, table = self.box(0.2), self.box(0.3), self.box(0.3, (9, 0, 0))
+        self.good("In both")
+        self.found()
+        self.assertEqual(bpy.ops.chandelier.let_light_out(rule="inside"), {"FINISHED"})
+        self.assertEqual([thing.visible_shadow for thing in (bulb, shade, table)], [False, False, True])
+        self.assertEqual(self.found(), [])
+        self.assertEqual(bpy.ops.chandelier.let_light_out(rule="inside"), {"CANCELLED"})
+
+    def test_materials_that_light_passes(self):
+        bulb = self.box(0.2)
+        self.good("In bulb")
+        material = bpy.data.materials.new("Glass")
+        material.use_nodes = True
+        shader = material.node_tree.nodes["Principled BSDF"]
+        transmission = shader.inputs["Transmission" if "Transmission" in shader.inputs else "Transmission Weight"]
+        bulb.data.materials.append(material)
+        for value, metallic, expected in ((0.4, 0, 1), (0.6, 0, 0), (0.6, 0.5, 1)):
+            transmission.default_value, shader.inputs["Metallic"].default_value = value, metallic
+            self.assertEqual(len(self.found()), expected, value)
+        if hasattr(material, "shadow_method"):
+            material.shadow_method = "NONE"
+            self.assertEqual(self.found(), [])
+            bulb.data.materials.append(None)
+            for face in bulb.data.polygons:
+                face.material_index = 1  # of which nothing is known
+            self.assertEqual(len(self.found()), 1)
+
+    def test_a_bulb_in_an_instance_without_shadow(self):
+        collection = bpy.data.collections.new("Bulbs")
+        bulb = self.box(0.2)
+        self.scene.collection.objects.unlink(bulb)
+        collection.objects.link(bulb)
+        instancer = self.add_instance(collection, (3, 0, 0))
+        self.good("In", location=(3, 0.01, 0))
+        self.assertEqual(self.found(), [("inside", "In")])
+        instancer.visible_shadow = False
+        self.assertEqual(self.found(), [])
+
+    def test_a_bulb_of_another_file_keeps_its_shadow(self):
+        library = self.link_library(self.box(0.2))
+        self.scene.collection.children.link(library)
+        self.good("In")
+        self.found()
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            self.assertEqual(bpy.ops.chandelier.let_light_out(rule="inside"), {"CANCELLED"})
+        self.assertIn("belongs to another file and keeps its shadow", said.getvalue())
+        self.assertEqual(self.found(), [("inside", "In")])
+
     def test_inside_a_large_single_sided_mesh(self):
         room = self.box(6)
         material = bpy.data.materials.new("Wall")

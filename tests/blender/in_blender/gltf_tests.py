@@ -196,8 +196,8 @@ class Checked(GltfCase):
         change(gltf, {node["name"]: node for node in gltf["nodes"]}, gltf["extensions"]["KHR_lights_punctual"]["lights"])
         changed = self.folder / "changed.gltf"
         changed.write_text(json.dumps(gltf))
-        table = part("scene_lights").read(bpy.context.evaluated_depsgraph_get())
-        return part("core.gltf_check").check(changed, table)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return part("core.gltf_check").check(changed, part("scene_lights").read(depsgraph), *part("shadows").meant(depsgraph))
 
     def assert_told(self, change, *says):
         (error,) = self.check_after(change).errors
@@ -256,7 +256,7 @@ class Checked(GltfCase):
         for data in (b"", b"{", b"glTF" + struct.pack("<II", 2, 12)):
             self.path.write_bytes(data)
             with self.assertRaises(ValueError) as raised:
-                part("core.gltf_check").check(self.path, table)
+                part("core.gltf_check").check(self.path, table, {}, {})
             self.assertIn(str(self.path), str(raised.exception))
 
 

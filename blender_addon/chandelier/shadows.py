@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What throws no shadow in Blender: objects by Ray Visibility > Shadow, their own or that of what instances them, and materials by
+EEVEE's Shadow Mode, where it has one (until 4.1)."""
+
+import bpy
+
+WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "FONT"}  # what the exporter makes meshes of
+GLASS = 0.5  # the baker lets light pass what transmits so much of it: baker/README.md
+
+
+def material_throws(material):
+    return getattr(material, "shadow_method", "OPAQUE") != "NONE"
+
+
+def placement_throws(instance):
+    """Of one of the depsgraph's instances. As in Cycles, whoever instances an object can switch off its shadow."""
+    return instance.object.original.visible_shadow and (not instance.is_instance or instance.parent.original.visible_shadow)
+
+
+def is_glass(material):
+    """Whether the baker will let light pass it. What textures say is not known here."""
+    nodes = material.node_tree.nodes if material.use_nodes and material.node_tree else ()
+    shader = next((node for node in nodes if node.type == "BSDF_PRINCIPLED"), None)
+    if shader is None:
+        return False
+    sockets = [shader.inputs.get(name) for name in ("Transmission", "Transmission Weight", "Metallic")]  # the second from 4.0 on
+    *transmission, metallic = [socket.default_value for socket in sockets if socket and not socket.is_linked]
+    return len(transmission) == 1 and transmission[0] * (1 - metallic) >= GLASS
+
+
+def is_see_through(material):
+    """Light passes it."""
+    return material is not None and (not material_throws(material) or is_glass(material))
+
+
+def meant(depsgraph):
+    """(objects, materials) by name, and whether they throw a shadow; None where those of one name differ."""
+    objects, materials = {}, {}
+    for instance in depsgraph.object_instances:
+        if instance.object.type in WITH_SURFACE:
+            note(objects, instance.object.name, placement_throws(instance))
+    for material in bpy.data.materials:
+        note(materials, material.name, material_throws(material))
+    return objects, materials
+
+
+def note(found, name, throws):
+    found[name] = throws if found.get(name, throws) == throws else None
