@@ -27,6 +27,11 @@ if(CHANDELIER_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
+# chandelier_compile_quickly(file…): what runs once, and is large by its templates; -O1 compiles it in half of the time.
+function(chandelier_compile_quickly)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # chandelier_shaders(TARGET file…): compiles each GLSL file to SPIR-V with glslangValidator and embeds it, so that
 # #include "shaders/NAME.h" gives `constexpr uint32_t NAME_EXT[]` (dots become underscores).
 function(chandelier_shaders target)

@@ -72,6 +72,26 @@ class Setup(unittest.TestCase):
         self.assertEqual(result.returncode, 3)
         self.assertRegex(result.stderr, r"^setup/blender4.sh: error: Blender 4.3 cannot be had: no[^\n]+\n$")
 
+    def test_make_demo_builds_only_what_it_runs_and_says_how_far_it_is(self):
+        """What make would do, where there is no build yet but for the programs' names."""
+        with tempfile.TemporaryDirectory() as build:
+            os.mkdir(os.path.join(build, "bin"))
+            for program in ("chandelier-bake", "chandelier-play"):
+                with open(os.path.join(build, "bin", program), "w", encoding="utf-8"):
+                    pass
+            done = subprocess.run(["make", "-n", "-C", ROOT, "demo", f"BUILD={build}"], capture_output=True, text=True, check=True)
+        lines = [line.strip() for line in done.stdout.splitlines()]
+        self.assertEqual([line for line in lines if line.startswith("cmake --build")],
+                         ["cmake --build --preset release --target chandelier-bake chandelier-play"])
+        self.assertIn("cmake --preset release", lines)
+        self.assertEqual([line.split(":")[1] for line in lines if line.startswith("demo: step")],
+                         [f" step {step} of 4" for step in (2, 3, 4)])  # make prints what it would say of the first
+        self.assertTrue(any(line.startswith('echo "demo: step 1 of 4') for line in lines))
+        for name in ("atrium", "cornell", "restaurant"):
+            (rendered,) = [number for number, line in enumerate(lines) if f"--report {build}/demo/{name}" in line]
+            self.assertTrue(any(f"demo: pictures of {name}: " in line and f"/demo/{name}" in line
+                                for line in lines[rendered:rendered + 3]), done.stdout)
+
     def test_make_help_names_every_target(self):
         with open(os.path.join(ROOT, "Makefile"), encoding="utf-8") as file:
             targets = set(re.search(r"^\.PHONY: (.*)$", file.read(), re.MULTILINE).group(1).split()) - {"help", "setup"}
