@@ -214,7 +214,6 @@ class CHANDELIER_PT_light(Properties, bpy.types.Panel):
 class CHANDELIER_PT_object(Properties, bpy.types.Panel):
     """Blender shows its own switch only where Cycles renders, and until 4.1 it is Cycles' alone."""
     bl_context = "object"
-    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):

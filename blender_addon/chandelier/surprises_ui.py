@@ -217,7 +217,7 @@ class CHANDELIER_OT_let_light_out(OfRule, bpy.types.Operator):
     """Let the meshes that these lights are inside of throw no shadow (Object Properties > Visibility > Ray Visibility > Shadow): right
     for bulbs and shades"""
     bl_idname = "chandelier.let_light_out"
-    bl_label = "Let the Mesh Throw No Shadow"
+    bl_label = "Mesh Throws No Shadow"
 
     def execute(self, context):
         depsgraph = context.evaluated_depsgraph_get()
