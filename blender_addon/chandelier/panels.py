@@ -221,7 +221,7 @@ class CHANDELIER_PT_object(Properties, bpy.types.Panel):
 
     def draw(self, context):
         self.layout.use_property_split = True
-        self.layout.prop(context.object, "visible_shadow", text="Throws a Shadow")
+        self.layout.prop(context.object, "visible_shadow", text="Shadow")
 
 
 class CHANDELIER_PT_scene(Properties, bpy.types.Panel):
