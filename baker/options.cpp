@@ -194,6 +194,10 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
                  "Where normals are missing, smooth edges up to this angle, degrees; 0 makes all flat, as glTF asks")
       ->capture_default_str()
       ->check(CLI::Validator(check_smooth_angle, ""));
+  app.add_flag(
+      "--glass-shadows", options.bake.glass_shadows,
+      "Materials that let half of the light through or more (KHR_materials_transmission) throw shadows too, as "
+      "if they were opaque");
   add_voxel_options(app, options.bake.voxels);
   add_image_options(app, options.bake.images);
   app.add_flag("--compress", options.compress,

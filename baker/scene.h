@@ -53,6 +53,7 @@ struct MeshInstance {
   std::uint32_t mesh = 0;
   std::uint32_t node = kNone;  // of Scene::nodes, where an animation or a skin moves it
   std::uint32_t skin = kNone;
+  bool shadowless = false;
 };
 
 enum class Wrap { repeat, clamp_to_edge, mirrored_repeat };
@@ -96,6 +97,11 @@ struct Material {
   bool masked = false;
   bool double_sided = false;
   bool unlit = false;
+  std::string where;              // for messages: file and material
+  float transmission_factor = 0;  // the part of the light that passes through
+  TextureUse transmission_map;    // red multiplies it
+  std::optional<bool> shadow;     // whether its author wants one, where that is said
+  bool shadowless = false;        // throws none
 };
 
 enum class LightType { point, spot, directional };
@@ -118,7 +124,7 @@ struct Light {
   bool unclustered = false;
   bool shadowless = false;
   float radius_m = 0;  // of a directional light: the tangent of half its angle
-  std::string group;  // name of the lights that share its shadow map; empty: none
+  std::string group;   // name of the lights that share its shadow map; empty: none
 };
 
 struct Camera {

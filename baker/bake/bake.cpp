@@ -2,12 +2,14 @@
 // The passes in their order.
 #include "bake.h"
 
+#include <algorithm>
 #include <span>
 
 #include "../error.h"
 #include "animation.h"
 #include "batch_bvh.h"
 #include "geometry_cache.h"
+#include "glass.h"
 #include "images.h"
 #include "instances.h"
 #include "light_audit.h"
@@ -19,6 +21,7 @@
 #include "strings.h"
 #include "textures.h"
 #include "threads.h"
+#include "throws_shadow.h"
 #include "triangle_bvh.h"
 
 namespace chandelier::baker {
@@ -53,6 +56,9 @@ void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& p
   report.run("instances", [&](PassReport& pass) {
     make_instances(scene, meshes, strings, pack);
     pass.bytes = bytes_of(pack.instances, pack.batch_instances);
+    pass.count("shadowless_batches", static_cast<double>(std::count_if(
+                                         pack.batch_instances.begin(), pack.batch_instances.end(),
+                                         [&](const auto& placed) { return !pack::throws_shadow(pack, placed); })));
   });
   report.run("batch_bvh", [&](PassReport& pass) { make_batch_bvh(pass, pack); });
   report.run("instance_bvh", [&](PassReport& pass) { make_instance_bvh(pass, pack); });
@@ -100,6 +106,7 @@ pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress&
   pack::Contents pack;
   Strings strings(pack.strings);
   std::vector<ImageRequest> requests;
+  report.run("glass", [&](PassReport& pass) { find_glass(scene, settings.glass_shadows, pass, warnings); });
   report.run("materials", [&](PassReport& pass) {
     requests = make_materials(scene, settings.images.textures != TextureMode::none, strings, pack);
     pass.bytes = bytes_of(pack.materials, pack.textures);

@@ -23,6 +23,7 @@ struct BakeSettings {
   VoxelSettings voxels;
   ImageSettings images;
   float smooth_angle_deg = 0;  // missing normals: neighbours within this are smoothed; 0: all flat
+  bool glass_shadows = false;  // what light passes through throws a shadow all the same
 };
 
 /// Runs all passes, and notes each in `report`; takes from `cache`, where there is one, what it keeps. Same scene and

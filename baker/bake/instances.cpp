@@ -29,6 +29,7 @@ pack::Instance instance_record(const MeshInstance& instance, std::uint32_t mesh,
   out.node = instance.node;
   out.skin = instance.skin;
   out.dynamic = instance.node != kNone || instance.skin != kNone;
+  out.shadowless = instance.shadowless;
   out.name = strings.add(instance.name);
   return out;
 }

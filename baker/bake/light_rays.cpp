@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "throws_shadow.h"
+
 namespace chandelier::baker {
 namespace {
 
@@ -131,12 +133,13 @@ double cosine_to_triangle(const Triangle& t, const glm::dvec3& axis) {
       {cosine_to_segment(t[0], t[1], axis), cosine_to_segment(t[1], t[2], axis), cosine_to_segment(t[2], t[0], axis)});
 }
 
-/// Notes the batch's triangles that the ray meets. The ray goes into mesh space, where distances along it stay.
+/// Notes the batch's triangles that the ray meets and that throw shadows. The ray goes into mesh space, where distances
+/// along it stay.
 void cast_at_batch(const pack::Contents& pack, const pack::BatchInstance& draw, const Ray& ray, double least_m,
                    RayHit& hit) {
   const pack::Batch& batch = pack.batches[draw.batch];
   const pack::Material& material = pack.materials[batch.material];
-  if (material.alpha_mode == pack::AlphaMode::mask) return;
+  if (material.alpha_mode == pack::AlphaMode::mask || !pack::throws_shadow(pack, draw)) return;
   const glm::dmat4 world = world_from_local(pack.instances[draw.instance]), local = glm::inverse(world);
   const Ray ray_ls = {glm::dvec3(local * glm::dvec4(ray.from, 1)), glm::dvec3(local * glm::dvec4(ray.way, 0))};
   const bool mirrored = glm::determinant(glm::dmat3(world)) < 0;

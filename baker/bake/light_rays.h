@@ -9,7 +9,8 @@
 
 namespace chandelier::baker {
 
-/// What a ray meets. Masked materials do not count: what their texture leaves of them is not known here.
+/// What a ray meets. What throws no shadow does not count, nor do masked materials: what their texture leaves of them
+/// is not known here.
 struct RayHit {
   double distance_m = INFINITY;  // of the first triangle
   bool closed_back = false;      // it is the back of a closed shell

@@ -156,7 +156,8 @@ ShellCounts find_shells(PackedMesh& mesh, const std::vector<Material>& materials
   walk_edges(triangles, place_count, forest, open);
 
   for_each_triangle(mesh, [&](std::uint32_t number, const PackedPrimitive& primitive, std::size_t) {
-    if (open[number] || materials[primitive.material].masked) open[forest.root(number)] = 1;
+    const Material& material = materials[primitive.material];
+    if (open[number] || material.masked || material.shadowless) open[forest.root(number)] = 1;
   });
   struct Shell {
     glm::dvec3 origin{0};

@@ -13,9 +13,9 @@ struct ShellCounts {
 
 /// Sets PackedPrimitive::closed. A shell is what hangs together by edges, over all primitives of the mesh; it is closed
 /// where every edge has exactly two triangles that run along it in opposite directions, oriented outwards where its
-/// volume is positive. A shell with a masked triangle counts as open: one sees its inside through the holes. So does a
-/// mesh that a skin bends (`rigid` false), whose places come apart. Double-sided materials make no difference: what
-/// closes is the geometry, and a shell's back hides the same light as its front.
+/// volume is positive. A shell with a masked triangle, or one that throws no shadow, counts as open: light gets inside.
+/// So does a mesh that a skin bends (`rigid` false), whose places come apart. Double-sided materials make no
+/// difference: what closes is the geometry, and a shell's back hides the same light as its front.
 ShellCounts find_shells(PackedMesh& mesh, const std::vector<Material>& materials, bool rigid);
 
 }  // namespace chandelier::baker

@@ -46,10 +46,11 @@ class SceneKey {
   }
 
   void add(const MeshInstance& instance) {
-    const auto& [name, where, world_from_local, mesh, node, skin] = instance;
+    const auto& [name, where, world_from_local, mesh, node, skin, shadowless] = instance;
     key_.add_text(name);
     add(world_from_local);
     for (const std::uint32_t number : {mesh, node, skin}) key_.add(number);
+    key_.add(shadowless);
   }
 
   void add(const TextureUse& use) {
@@ -62,14 +63,15 @@ class SceneKey {
   void add(const Material& material) {
     const auto& [name, base_color_factor, emissive, metallic_factor, roughness_factor, alpha_cutoff, normal_scale,
                  occlusion_strength, base_color, metallic_roughness, normal, occlusion, emissive_map, masked,
-                 double_sided, unlit] = material;
+                 double_sided, unlit, where, transmission_factor, transmission_map, shadow, shadowless] =
+        material;  // glass is found by now: its map has chosen materials
     add(base_color_factor);
     add(emissive);
     for (const float value : {metallic_factor, roughness_factor, alpha_cutoff, normal_scale, occlusion_strength}) {
       key_.add(value);
     }
     for (const TextureUse* use : {&base_color, &metallic_roughness, &normal, &occlusion, &emissive_map}) add(*use);
-    for (const bool value : {masked, double_sided, unlit}) key_.add(value);
+    for (const bool value : {masked, double_sided, unlit, shadowless}) key_.add(value);
   }
 
   void add(const Node& node) {
@@ -111,7 +113,7 @@ class SceneKey {
 
 void add_geometry_settings(CacheKey& key, const BakeSettings& settings) {
   const auto& [batch_triangles, range_threshold_lx, position_error_m, normal_bits, uv_bits, voxels, images,
-               smooth_angle_deg] = settings;
+               smooth_angle_deg, glass_shadows] = settings;
   const auto& [resolution, mode] = voxels;
   key.add(batch_triangles);
   key.add(position_error_m);

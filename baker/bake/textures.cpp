@@ -109,6 +109,8 @@ pack::Material record_of(const Material& material, Strings& strings) {
   out.alpha_mode = material.masked ? pack::AlphaMode::mask : pack::AlphaMode::opaque;
   out.double_sided = material.double_sided;
   out.unlit = material.unlit;
+  out.shadowless = material.shadowless;
+  out.transmission_factor = material.transmission_factor;
   out.name = strings.add(material.name);
   return out;
 }

@@ -12,6 +12,7 @@
 #include "../error.h"
 #include "clip.h"
 #include "is_static.h"
+#include "throws_shadow.h"
 #include "voxel_grid.h"
 #include "voxel_pieces.h"
 
@@ -40,7 +41,8 @@ std::vector<VoxelBlock> make_blocks(const pack::Contents& pack, const Grid& grid
   std::atomic<std::uint64_t> clipped_triangles = 0;
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
     for (std::size_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i) {
-      if (!is_static(pack, pack.batch_instances[i])) continue;
+      const pack::BatchInstance& record = pack.batch_instances[i];
+      if (!is_static(pack, record) || !pack::throws_shadow(pack, record)) continue;
       const PlacedBatch placed(pack, static_cast<std::uint32_t>(i));
       if (mode == pack::VoxelMode::clip) {
         bin_clipped(placed, grid, clipped_triangles, blocks[b]);

@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "morph.h"
 #include "skin_vertices.h"
 #include "vertices.h"
 
@@ -56,14 +57,14 @@ void read_skin(const VertexSource& source, Primitive& out, std::vector<std::stri
   }
 }
 
-void read_triangles(const Gltf& gltf, std::size_t mesh, std::size_t number, bool skinned, const std::string& where,
-                    ReadPrimitive& read) {
+void read_triangles(const Gltf& gltf, std::size_t mesh, std::size_t number, bool skinned,
+                    std::span<const double> morph_weights, const std::string& where, ReadPrimitive& read) {
   const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
   const Json& json = json_of(gltf, mesh, number);
   std::optional<DracoPrimitive> draco;
   if (draco_of(json)) draco = decode_draco(gltf, json, where + ", KHR_draco_mesh_compression");
   const std::size_t vertices = gltf.model.accessors[static_cast<std::size_t>(in.attributes.at("POSITION"))].count;
-  const VertexSource source{gltf, in, draco ? &*draco : nullptr, where, vertices};
+  const VertexSource source{gltf, in, draco ? &*draco : nullptr, where, vertices, morph_weights};
   Primitive out;
   std::vector<std::uint32_t> corners = corners_of(source, draco ? &*draco : nullptr);
   const int mode = draco ? TINYGLTF_MODE_TRIANGLES : in.mode;
@@ -73,6 +74,8 @@ void read_triangles(const Gltf& gltf, std::size_t mesh, std::size_t number, bool
   out.indices = triangle_list(mode, std::move(corners));
   if (out.indices.empty()) return;
   read_vertices(source, out);
+  const std::string unread = unread_morph(source);
+  if (!unread.empty()) read.warnings.push_back("morph targets of " + shortened(unread, 40) + " are ignored");
   if (skinned) read_skin(source, out, read.warnings);
   read.primitive = std::move(out);
 }
@@ -101,7 +104,8 @@ std::vector<std::uint32_t> triangle_list(int mode, std::vector<std::uint32_t> co
   return out;
 }
 
-void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, GeometrySize& total) {
+void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, std::span<const double> morph_weights,
+              GeometrySize& total) {
   const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
   const std::string where = gltf.file + ": " + place_of_primitive(gltf, mesh, number);
   const Json* draco = draco_of(json_of(gltf, mesh, number));
@@ -119,6 +123,7 @@ void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, GeometrySi
   const std::uint64_t corners = in.mode == TINYGLTF_MODE_TRIANGLES ? drawn : 3 * drawn;
   const bool flat = !in.attributes.contains("NORMAL");  // each corner may become a vertex of its own
   total.bytes += (flat ? vertices + corners : vertices) * sizeof(Vertex) + corners * sizeof(std::uint32_t);
+  add_morph_size(gltf, in, morph_weights, where, total.morphed);
   if (total.zeros > kMostZeros) {
     fail(where, "accessors without a buffer view have more than " + std::to_string(kMostZeros) +
                     " elements together (" + std::to_string(total.zeros) + ")");
@@ -129,7 +134,8 @@ void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, GeometrySi
   }
 }
 
-ReadPrimitive read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t number, bool skinned) {
+ReadPrimitive read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t number, bool skinned,
+                             std::span<const double> morph_weights) {
   const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
   ReadPrimitive out;
   const std::string skip = reason_to_skip(gltf, in, draco_of(json_of(gltf, mesh, number)));
@@ -137,10 +143,9 @@ ReadPrimitive read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t num
     out.warnings.push_back(skip);
     return out;
   }
-  if (!in.targets.empty()) out.warnings.push_back("morph targets are ignored: the base mesh is baked");
   try {
     const std::string where = gltf.file + ": " + place_of_primitive(gltf, mesh, number);
-    read_triangles(gltf, mesh, number, skinned, where, out);
+    read_triangles(gltf, mesh, number, skinned, morph_weights, where, out);
   } catch (const Error& error) {
     out.error = error.what();
   }

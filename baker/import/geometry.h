@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "../scene.h"
 #include "gltf.h"
@@ -12,13 +13,15 @@ namespace chandelier::baker {
 /// What the geometry of a file comes to. A few bytes can stand for much: accessors without data are all zeros, and many
 /// primitives can share one.
 struct GeometrySize {
-  std::uint64_t bytes = 0;  // of vertices and indices in memory
-  std::uint64_t zeros = 0;  // elements of accessors without data
+  std::uint64_t bytes = 0;    // of vertices and indices in memory
+  std::uint64_t zeros = 0;    // elements of accessors without data
+  std::uint64_t morphed = 0;  // vertices that morph targets move
 };
 
-/// Adds a primitive to `total` before anything of it is read. Throws Error above 16 GiB, which holds 100 million
-/// triangles, or above 2^22 zeros.
-void add_size(const Gltf& gltf, std::size_t mesh, std::size_t primitive, GeometrySize& total);
+/// Adds a primitive, shown with these morph weights, to `total` before anything of it is read. Throws Error above
+/// 16 GiB, which holds 100 million triangles, above 2^22 zeros or 2^30 morphed vertices.
+void add_size(const Gltf& gltf, std::size_t mesh, std::size_t primitive, std::span<const double> morph_weights,
+              GeometrySize& total);
 
 /// A primitive's triangles, or nothing where it has none (points, lines, no positions); what was left out or mended;
 /// what is wrong with it. Primitives are read side by side, so all is kept until it can be told in order.
@@ -28,8 +31,10 @@ struct ReadPrimitive {
   std::string error;
 };
 
-/// The material is left to the caller. Joints and weights are read where it is `skinned`.
-ReadPrimitive read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive, bool skinned);
+/// The material is left to the caller. Joints and weights are read where it is `skinned`; morph targets are applied by
+/// their weights.
+ReadPrimitive read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive, bool skinned,
+                             std::span<const double> morph_weights);
 
 /// "mesh 3 'door', primitive 0"
 std::string place_of_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive);

@@ -51,8 +51,16 @@ void check_accessor(const Json& root, const Object& accessor) {
   values->integer("byteOffset", 0, kMostInt);
 }
 
+void check_weights(const Object& object) {
+  const Json* weights = object.find("weights");
+  if (!weights) return;
+  if (!weights->is_array()) object.bad("weights", "is not an array", *weights);
+  for (const Json& weight : *weights) object.check_number("weights", weight, -kBig, kBig);
+}
+
 void check_mesh(const Json& root, const Object& mesh) {
   const std::size_t accessors = section_size(root, "accessors");
+  check_weights(mesh);
   for (const Object& primitive : mesh.objects("primitives", Need::required)) {
     primitive.integer("mode", 0, 6);
     primitive.index("material", section_size(root, "materials"));
@@ -60,6 +68,9 @@ void check_mesh(const Json& root, const Object& mesh) {
     const auto attributes = primitive.object("attributes", Need::required);
     for (const auto& [name, value] : attributes->json.items()) {
       primitive.check_index(("attribute " + name).c_str(), value, accessors);
+    }
+    for (const Object& target : primitive.objects("targets")) {
+      for (const auto& [name, value] : target.json.items()) target.check_index(name.c_str(), value, accessors);
     }
     check_draco(root, primitive);
   }
@@ -82,6 +93,7 @@ void check_node(const Json& root, const Object& node) {
   node.indices("children", section_size(root, "nodes"));
   node.numbers("matrix", 16, -kBig, kBig);
   check_last_row(node);
+  check_weights(node);
   node.numbers("translation", 3, -kBig, kBig);
   node.numbers("rotation", 4, -kBig, kBig);
   node.numbers("scale", 3, -kBig, kBig);
@@ -123,6 +135,10 @@ void check_material(const Json& root, const Object& material) {
   material.boolean("doubleSided");
   if (const auto strength = material.extension("KHR_materials_emissive_strength")) {
     strength->number("emissiveStrength", 0, kBig);
+  }
+  if (const auto transmission = material.extension("KHR_materials_transmission")) {
+    transmission->number("transmissionFactor", 0, 1);
+    check_texture_use(root, *transmission, "transmissionTexture", nullptr);
   }
 }
 

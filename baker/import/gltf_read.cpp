@@ -94,14 +94,18 @@ void make_integers(Json& json) {
       "attributes", "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride", "camera",
       "children",   "componentType", "count",      "index",      "indices",    "input",      "joints",
       "material",   "mesh",          "mode",       "node",       "nodes",      "output",     "sampler",
-      "scene",      "skeleton",      "skin",       "source",     "target",     "texCoord"};
+      "scene",      "skeleton",      "skin",       "source",     "target",     "targets",    "texCoord"};
   if (json.is_array() && !json.empty() && !json[0].is_structured()) return;  // of numbers
   for (auto it = json.begin(); json.is_structured() && it != json.end(); ++it) {
     if (it->is_structured()) make_integers(*it);
     if (!json.is_object() || !kKeys.contains(it.key())) continue;
     make_integer(*it);
     if (!it->is_structured()) continue;
-    for (Json& each : *it) make_integer(each);
+    for (Json& each : *it) {
+      make_integer(each);
+      if (it.key() != "targets" || !each.is_object()) continue;
+      for (Json& accessor : each) make_integer(accessor);
+    }
   }
 }
 
@@ -242,8 +246,8 @@ void check_extensions(const Json& json, const std::string& file, Warnings& warni
   static const std::set<std::string> kKnown = {
       "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
       "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-      "KHR_materials_unlit",        "KHR_mesh_quantization",   "KHR_meshopt_compression",
-      "KHR_texture_basisu",         "KHR_texture_transform"};
+      "KHR_materials_transmission", "KHR_materials_unlit",     "KHR_mesh_quantization",
+      "KHR_meshopt_compression",    "KHR_texture_basisu",      "KHR_texture_transform"};
   std::set<std::string> required;
   for (const char* key : {"extensionsRequired", "extensionsUsed"}) {
     const auto it = json.find(key);

@@ -5,13 +5,15 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <glm/ext/matrix_transform.hpp>
 
+#include "extras.h"
 #include "geometry.h"
 #include "gltf.h"
 #include "instancing.h"
 #include "lights.h"
 #include "materials.h"
-#include "motion.h"
+#include "mesh_use.h"
 #include "nodes.h"
 
 namespace chandelier::baker {
@@ -19,30 +21,31 @@ namespace {
 
 constexpr std::size_t kMostInstances = std::size_t{1} << 24;  // a few bytes of a file can stand for many
 
-/// What the scene shows of a glTF mesh.
-struct MeshUse {
-  std::uint32_t number = kNone;   // of Scene::meshes
-  bool skinned = false;           // by one node at least
-  std::uint32_t joint_count = 0;  // that its vertices ask for; 0 where not all of them have joints
-};
-
 struct Import {
   Gltf& gltf;
   Scene& scene;
   Warnings& warnings;
   Motion motion;
-  std::vector<MeshUse> meshes;          // by glTF's numbers
-  std::vector<std::size_t> mesh_order;  // the used ones, as the scene has them
+  MeshUses meshes;
+  std::vector<const MeshShape*> mesh_order;  // as the scene has them
 };
 
 std::uint32_t skin_of(const Import& in, const tinygltf::Node& node) {
   return node.skin < 0 ? kNone : in.motion.skin[static_cast<std::size_t>(node.skin)];
 }
 
-/// A mesh with a skin stands where its joints are, wherever its node is (glTF 2.0, 3.7.3.3): in the rest pose, as a
-/// whole, where the first joint puts it.
+/// Of a skin that nothing moves; else nullptr.
+const Pose* pose_of(const Import& in, const tinygltf::Node& node) {
+  if (node.skin < 0) return nullptr;
+  const Pose& pose = in.motion.pose[static_cast<std::size_t>(node.skin)];
+  return pose.world_from_bind.empty() ? nullptr : &pose;
+}
+
+/// A mesh with a skin stands where its joints are, wherever its node is (glTF 2.0, 3.7.3.3). Where nothing moves them,
+/// its vertices are there. Else it is in its bind pose, as a whole, where the first joint puts it.
 glm::dmat4 place_of_mesh(const Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
+  if (const Pose* pose = pose_of(in, node)) return glm::translate(glm::dmat4(1), pose->origin_ws);
   if (skin_of(in, node) == kNone) return placed.world_from_local;
   const glm::dmat4& by_joint = in.motion.placed[static_cast<std::size_t>(node.skin)];
   return is_degenerate(by_joint) ? placed.world_from_local : by_joint;
@@ -78,18 +81,22 @@ void visit_node(Import& in, const PlacedNode& placed) {
   if (in.scene.cameras.size() > cameras) in.scene.cameras.back().node = mover;
   if (node.mesh < 0) return;
   if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return warn_of_scale(in, placed);
-  MeshUse& use = in.meshes[static_cast<std::size_t>(node.mesh)];
-  use.skinned = use.skinned || skin_of(in, node) != kNone;
-  if (use.number != kNone) return;
+  const auto [it, added] = in.meshes.try_emplace(shape_of(in.gltf, in.motion, placed.node));
+  MeshUse& use = it->second;
+  use.skinned = use.skinned || skin_of(in, node) != kNone || pose_of(in, node);
+  if (!added) return;
+  use.first_node = placed.node;
   use.number = fit_u32(in.scene.meshes.size() + in.mesh_order.size(), "meshes");
-  in.mesh_order.push_back(static_cast<std::size_t>(node.mesh));
+  in.mesh_order.push_back(&it->first);
 }
 
 /// Refuses geometry that is too large, before any of it takes memory.
 void check_size(const Import& in) {
   GeometrySize total;
-  for (const std::size_t mesh : in.mesh_order) {
-    for (std::size_t p = 0; p < in.gltf.model.meshes[mesh].primitives.size(); ++p) add_size(in.gltf, mesh, p, total);
+  for (const MeshShape* shape : in.mesh_order) {
+    for (std::size_t p = 0; p < in.gltf.model.meshes[shape->mesh].primitives.size(); ++p) {
+      add_size(in.gltf, shape->mesh, p, shape->morph_weights, total);
+    }
   }
 }
 
@@ -97,13 +104,13 @@ std::vector<std::vector<ReadPrimitive>> read_primitives(const Import& in) {
   std::vector<std::vector<ReadPrimitive>> out(in.mesh_order.size());
   std::vector<std::pair<std::size_t, std::size_t>> jobs;  // mesh in order, primitive
   for (std::size_t m = 0; m < out.size(); ++m) {
-    out[m].resize(in.gltf.model.meshes[in.mesh_order[m]].primitives.size());
+    out[m].resize(in.gltf.model.meshes[in.mesh_order[m]->mesh].primitives.size());
     for (std::size_t p = 0; p < out[m].size(); ++p) jobs.emplace_back(m, p);
   }
   tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
     const auto [m, p] = jobs[i];
-    const std::size_t mesh = in.mesh_order[m];
-    out[m][p] = read_primitive(in.gltf, mesh, p, in.meshes[mesh].skinned);
+    const MeshShape& shape = *in.mesh_order[m];
+    out[m][p] = read_primitive(in.gltf, shape.mesh, p, in.meshes.at(shape).skinned, shape.morph_weights);
   });
   return out;
 }
@@ -123,55 +130,75 @@ std::uint32_t settle_joints(Mesh& mesh) {
   return count;
 }
 
-void add_mesh(Import& in, std::size_t index, std::vector<ReadPrimitive>&& read, Materials& materials) {
+/// Throws Error where a node's mesh asks for joints that its skin lacks.
+void check_joints(const Import& in, std::size_t node, std::uint32_t asked, std::size_t joints) {
+  if (asked <= joints) return;
+  fail(in.gltf.file + ": " + place(in.gltf.json, "nodes", node),
+       "its mesh asks for joints that its skin lacks, which has " + std::to_string(joints) + " (" +
+           std::to_string(asked - 1) + ")");
+}
+
+void add_mesh(Import& in, const MeshShape& shape, std::vector<ReadPrimitive>&& read, Materials& materials) {
   Mesh mesh;
   for (std::size_t p = 0; p < read.size(); ++p) {
     for (const std::string& warning : read[p].warnings) {
-      in.warnings.add(in.gltf.file, place_of_primitive(in.gltf, index, p), warning);
+      in.warnings.add(in.gltf.file, place_of_primitive(in.gltf, shape.mesh, p), warning);
     }
     if (!read[p].error.empty()) throw Error(read[p].error);
     if (!read[p].primitive) continue;
     Primitive& primitive = *read[p].primitive;
-    primitive.material = materials.use(in.gltf.model.meshes[index].primitives[p].material);
+    primitive.material = materials.use(in.gltf.model.meshes[shape.mesh].primitives[p].material);
     const Material& material = in.scene.materials[primitive.material];
     primitive.needs_tangents = primitive.needs_tangents && material.normal.texture != kNone;
     primitive.tangents_from_uv1 = material.normal.uv1;
     mesh.primitives.push_back(std::move(primitive));
   }
-  if (in.meshes[index].skinned) in.meshes[index].joint_count = settle_joints(mesh);
+  MeshUse& use = in.meshes.at(shape);
+  if (use.skinned) use.joint_count = settle_joints(mesh);
+  if (shape.posed_by != SIZE_MAX && use.joint_count > 0) {
+    const Pose& pose = in.motion.pose[shape.posed_by];
+    check_joints(in, use.first_node, use.joint_count, pose.world_from_bind.size());
+    apply_pose(pose, in.gltf.file + ": " + place(in.gltf.json, "meshes", shape.mesh), mesh);
+  }
   in.scene.meshes.push_back(std::move(mesh));
 }
 
-/// The node's skin, where its mesh has joints for it. Throws Error where the mesh asks for joints that it lacks.
-std::uint32_t checked_skin(const Import& in, const tinygltf::Node& node, const std::string& here) {
+/// Stands the instance where its mesh's skin has it, where it has one and its mesh has joints. Throws Error where the
+/// mesh asks for joints that the skin lacks.
+void place_by_skin(const Import& in, const PlacedNode& placed, const MeshUse& mesh, MeshInstance& instance) {
+  const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   const std::uint32_t skin = skin_of(in, node);
-  if (skin == kNone) return kNone;
-  const std::uint32_t asked = in.meshes[static_cast<std::size_t>(node.mesh)].joint_count;
-  const std::size_t joints = in.scene.skins[skin].joints.size();
-  if (asked == 0) {
-    in.warnings.add(in.gltf.file, here, "a skin is ignored: its mesh has vertices without joints");
-    return kNone;
+  const bool posed = pose_of(in, node) != nullptr;
+  if (skin == kNone && !posed) return;
+  if (mesh.joint_count == 0) {
+    in.warnings.add(in.gltf.file, place(in.gltf.json, "nodes", placed.node),
+                    "a skin is ignored: its mesh has vertices without joints");
+    return;
   }
-  if (asked > joints) {
-    fail(in.gltf.file + ": " + here, "its mesh asks for joints that its skin lacks, which has " +
-                                         std::to_string(joints) + " (" + std::to_string(asked - 1) + ")");
+  if (posed) {
+    instance.node = kNone;  // which glTF leaves out of account
+  } else {
+    check_joints(in, placed.node, mesh.joint_count, in.scene.skins[skin].joints.size());
   }
-  return skin;
+  instance.skin = skin;
+  instance.world_from_local = place_of_mesh(in, placed);
 }
 
 void add_instances(Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
+  const bool shadowless = is_shadowless(in.gltf, placed.node, in.warnings);
   if (node.mesh < 0) return;
-  const MeshUse& mesh = in.meshes[static_cast<std::size_t>(node.mesh)];
   if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return;
+  const MeshUse& mesh = in.meshes.at(shape_of(in.gltf, in.motion, placed.node));
   const std::string here = place(in.gltf.json, "nodes", placed.node), where = in.gltf.file + ": " + here;
   MeshInstance instance{node.name, where, placed.world_from_local, mesh.number, in.motion.mover(placed.node)};
-  instance.skin = checked_skin(in, node, here);
-  if (instance.skin != kNone) instance.world_from_local = place_of_mesh(in, placed);
+  instance.shadowless = shadowless;
+  place_by_skin(in, placed, mesh, instance);
+  const bool skinned = instance.skin != kNone || (pose_of(in, node) && mesh.joint_count > 0);
   const bool grows = instance.node != kNone || instance.skin != kNone;
   if (is_degenerate(instance.world_from_local) && !grows) return warn_of_scale(in, placed);
   const auto places = read_instances(in.gltf, placed.node);
-  if (!places || instance.skin != kNone) {
+  if (!places || skinned) {
     if (places) in.warnings.add(in.gltf.file, here, "EXT_mesh_gpu_instancing on a mesh with a skin is ignored");
     in.scene.instances.push_back(std::move(instance));
     return;
@@ -196,13 +223,13 @@ void import_file(const std::filesystem::path& path, Scene& scene, Warnings& warn
   scene.sources.push_back(path.filename().string());
   const std::vector<PlacedNode> nodes = place_nodes(gltf);
   Motion motion = add_motion(gltf, nodes, scene, warnings);
-  Import in{gltf, scene, warnings, std::move(motion), std::vector<MeshUse>(gltf.model.meshes.size()), {}};
+  Import in{gltf, scene, warnings, std::move(motion), {}, {}};
   for (const PlacedNode& placed : nodes) visit_node(in, placed);
   check_size(in);
   std::vector<std::vector<ReadPrimitive>> primitives = read_primitives(in);
   Materials materials(gltf, scene, warnings);
   for (std::size_t m = 0; m < primitives.size(); ++m) {
-    add_mesh(in, in.mesh_order[m], std::move(primitives[m]), materials);
+    add_mesh(in, *in.mesh_order[m], std::move(primitives[m]), materials);
   }
   for (const PlacedNode& placed : nodes) add_instances(in, placed);
   materials.warn();

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <string_view>
+
+#include "extras.h"
 
 namespace chandelier::baker {
 namespace {
@@ -16,59 +17,11 @@ constexpr std::array<std::string_view, 8> kKnownKeys = {"cluster",  "dynamic",  
                                                         "priority", "radius_m", "range_m", "shadow"};
 constexpr double kMostPriority = 255, kMostPower = 1e12, kLeastRange = 1e-12, kMostRange = 3e38, kMostRadius = 1e6;
 
-/// One `extras.chandelier` and where it is; each member function reads one of its keys, where it is there.
-struct Extras {
-  const Json& json;
-  std::string where;
-
-  [[noreturn]] void bad(const char* key, const char* what, const Json& value) const {
-    fail(where + ", " + key, std::string(what) + " (" + shortened(value.dump(-1, ' ', true), 60) + ")");
-  }
-
-  std::optional<bool> boolean(const char* key) const {
-    const auto it = json.find(key);
-    if (it == json.end()) return std::nullopt;
-    if (!it->is_boolean()) bad(key, "is not true or false", *it);
-    return it->get<bool>();
-  }
-
-  std::optional<std::string> text(const char* key) const {
-    const auto it = json.find(key);
-    if (it == json.end()) return std::nullopt;
-    if (!it->is_string()) bad(key, "is not a string", *it);
-    return it->get<std::string>();
-  }
-
-  std::optional<double> number(const char* key, double least, double most) const {
-    const auto it = json.find(key);
-    if (it == json.end()) return std::nullopt;
-    if (!it->is_number()) bad(key, "is not a number", *it);
-    const auto value = it->get<double>();
-    if (!(value >= least && value <= most)) bad(key, "is out of range", *it);
-    return value;
-  }
-
-  /// JSON Schema's integer: 128.0 is one.
-  std::optional<std::uint32_t> integer(const char* key, double least, double most) const {
-    const auto value = number(key, least, most);
-    if (!value) return std::nullopt;
-    if (*value != std::floor(*value)) bad(key, "is not a whole number", json[key]);
-    return static_cast<std::uint32_t>(*value);
-  }
-};
-
-/// `owner`: a node or a light. A key that nothing reads may be a typing error: that is said, as it changes nothing.
+/// `owner`: a node or a light.
 void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, Light& out, Warnings& warnings) {
-  const auto all = owner.find("extras");
-  if (all == owner.end() || !all->is_object() || !all->contains("chandelier")) return;
-  const Extras extras{(*all)["chandelier"], gltf.file + ": " + here + ", extras.chandelier"};
-  if (!extras.json.is_object()) {
-    fail(extras.where, "is not an object (" + shortened(extras.json.dump(-1, ' ', true), 60) + ")");
-  }
-  for (const auto& [key, value] : extras.json.items()) {
-    if (std::find(kKnownKeys.begin(), kKnownKeys.end(), key) != kKnownKeys.end()) continue;
-    warnings.add(gltf.file, here, "extras.chandelier: unknown key is ignored", key.empty() ? "an empty name" : key);
-  }
+  const std::optional<Extras> found = extras_of(gltf, owner, here, kKnownKeys, warnings);
+  if (!found) return;
+  const Extras& extras = *found;
   if (const auto value = extras.integer("priority", 0, kMostPriority)) out.priority = *value;
   if (const auto value = extras.boolean("dynamic")) out.dynamic = *value;
   if (const auto value = extras.boolean("cluster")) out.unclustered = !*value;

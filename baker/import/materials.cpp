@@ -8,6 +8,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "extras.h"
+
 namespace chandelier::baker {
 namespace {
 
@@ -82,6 +84,7 @@ std::uint32_t Materials::add_material(int index) {
     const std::string where = gltf_.file + ": " + here;
     const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
     out.name = in.name;
+    out.where = where;
     for (int c = 0; c < 4; ++c) out.base_color_factor[c] = static_cast<float>(pbr.baseColorFactor[c]);
     const double strength = emissive_strength(gltf_.json["materials"][static_cast<std::size_t>(index)]);
     for (int c = 0; c < 3; ++c) out.emissive[c] = static_cast<float>(in.emissiveFactor[c] * strength);
@@ -104,6 +107,9 @@ std::uint32_t Materials::add_material(int index) {
     out.normal = use_texture(json, "normalTexture", false, here);
     out.occlusion = use_texture(json, "occlusionTexture", false, here);
     out.emissive_map = use_texture(json, "emissiveTexture", false, here);
+    read_transmission(json, here, out);
+    out.shadow = shadow_of_material(gltf_, static_cast<std::size_t>(index), warnings_);
+    out.shadowless = !out.shadow.value_or(true);
     // Without its map, which may be black nearly everywhere, the whole surface would glow.
     if (json.contains("emissiveTexture") && out.emissive_map.texture == kNone) out.emissive = glm::vec3(0);
     if (in.alphaMode != "OPAQUE" && in.alphaMode != "MASK" && in.alphaMode != "BLEND") {
@@ -115,6 +121,19 @@ std::uint32_t Materials::add_material(int index) {
   }
   scene_.materials.push_back(std::move(out));
   return fit_u32(scene_.materials.size() - 1, "materials");
+}
+
+/// KHR_materials_transmission. Without its map, the whole surface would let light through.
+void Materials::read_transmission(const Json& material, const std::string& here, Material& out) {
+  static const Json::json_pointer kPath("/extensions/KHR_materials_transmission");
+  if (!material.contains(kPath)) return;
+  const Json& transmission = material[kPath];
+  out.transmission_factor = transmission.value("transmissionFactor", 0.0f);
+  if (out.transmission_factor == 0) return;
+  out.transmission_map = use_texture(transmission, "transmissionTexture", false, here);
+  if (transmission.contains("transmissionTexture") && out.transmission_map.texture == kNone) {
+    out.transmission_factor = 0;
+  }
 }
 
 TextureUse Materials::use_texture(const Json& owner, const char* key, bool alpha, const std::string& here) {

@@ -22,6 +22,7 @@ class Materials {
 
  private:
   std::uint32_t add_material(int material);
+  void read_transmission(const Json& material, const std::string& here, Material& out);
   /// The texture that `owner` names under `key`; `alpha`: its alpha decides where there is a surface.
   TextureUse use_texture(const Json& owner, const char* key, bool alpha, const std::string& here);
   /// The image of a texture, where it has one that can be read.

@@ -3,6 +3,7 @@
 // move, and all nodes above these.
 #include "motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
@@ -98,16 +99,49 @@ Flags used_skins(const Gltf& gltf, const std::vector<PlacedNode>& placed, const 
   return used;
 }
 
-void add_skin(const Gltf& gltf, std::size_t number, const std::vector<glm::dmat4>& world, Motion& motion,
-              Scene& scene) {
+/// Whether an animation moves one of a skin's joints.
+bool moves(const Motion& motion, const Json& skin) {
+  return std::any_of(skin["joints"].begin(), skin["joints"].end(),
+                     [&](const Json& joint) { return motion.moves[joint.get<std::size_t>()] != 0; });
+}
+
+/// Whether joints that stand as they do show a mesh as its bind pose, moved as a whole.
+bool is_bind_pose(const std::vector<glm::dmat4>& world_from_bind) {
+  constexpr double kRounding = 1e-4;  // of inverse bind matrices, which are floats
+  const glm::dmat4& first = world_from_bind[0];
+  double size = 1;
+  for (int i = 0; i < 16; ++i) size = std::max(size, std::abs(first[i / 4][i % 4]));
+  for (const glm::dmat4& each : world_from_bind) {
+    for (int i = 0; i < 16; ++i) {
+      if (std::abs(each[i / 4][i % 4] - first[i / 4][i % 4]) > kRounding * size) return false;
+    }
+  }
+  return true;
+}
+
+/// A skin whose joints an animation moves goes into the scene; of others, where they stand is all there is to know.
+void add_skin(const Gltf& gltf, std::size_t number, const std::vector<glm::dmat4>& world, Motion& motion, Scene& scene,
+              Warnings& warnings) {
   const Json& json = gltf.json["skins"][number];
-  const auto matrices = read_bind_matrices(gltf, json, gltf.file + ": " + place(gltf.json, "skins", number));
+  const std::string here = place(gltf.json, "skins", number);
+  const auto matrices = read_bind_matrices(gltf, json, gltf.file + ": " + here);
+  Pose pose;
   Skin skin;
   skin.name = json.value("name", "");
   for (std::size_t i = 0; i < matrices.size(); ++i) {
-    skin.joints.push_back({motion.node[json["joints"][i].get<std::size_t>()], matrices[i]});
+    const auto node = json["joints"][i].get<std::size_t>();
+    pose.world_from_bind.push_back(world[node] * glm::dmat4(matrices[i]));
+    skin.joints.push_back({motion.node[node], matrices[i]});
   }
-  motion.placed[number] = world[json["joints"][0].get<std::size_t>()] * glm::dmat4(matrices[0]);
+  pose.origin_ws = glm::dvec3(world[json["joints"][0].get<std::size_t>()][3]);
+  if (!moves(motion, json)) {
+    motion.pose[number] = std::move(pose);
+    return;
+  }
+  if (!is_bind_pose(pose.world_from_bind)) {
+    warnings.add(gltf.file, here, "a skin that is animated is not played: its meshes are shown in their bind pose");
+  }
+  motion.placed[number] = pose.world_from_bind[0];
   motion.skin[number] = fit_u32(scene.skins.size(), "skins");
   scene.skins.push_back(std::move(skin));
 }
@@ -121,7 +155,7 @@ void keep(std::size_t node, const std::vector<std::size_t>& parents, Flags& kept
 
 Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene& scene, Warnings& warnings) {
   const std::size_t count = gltf.model.nodes.size();
-  Motion motion{std::vector<std::uint32_t>(count, kNone), Flags(count, 0), {}, {}};
+  Motion motion{std::vector<std::uint32_t>(count, kNone), Flags(count, 0), {}, {}, {}};
   Flags in_scene(count, 0), kept(count, 0);
   std::vector<std::size_t> parents(count, SIZE_MAX);
   std::vector<glm::dmat4> world(count);
@@ -137,15 +171,14 @@ Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene
       keep(channel.node, parents, kept);
     }
   }
-  const Flags used = used_skins(gltf, placed, in_scene, warnings);
-  for (std::size_t s = 0; s < used.size(); ++s) {
-    for (const Json& joint : gltf.json["skins"][s]["joints"]) {
-      if (used[s]) keep(joint.get<std::size_t>(), parents, kept);
-    }
-  }
   for (const PlacedNode& each : placed) {  // parents first
     if (each.parent != SIZE_MAX && motion.moves[each.parent]) motion.moves[each.node] = 1;
     if (motion.moves[each.node] && carries(gltf.model.nodes[each.node])) keep(each.node, parents, kept);
+  }
+  const Flags used = used_skins(gltf, placed, in_scene, warnings);
+  for (std::size_t s = 0; s < used.size(); ++s) {
+    if (!used[s] || !moves(motion, gltf.json["skins"][s])) continue;
+    for (const Json& joint : gltf.json["skins"][s]["joints"]) keep(joint.get<std::size_t>(), parents, kept);
   }
   for (const PlacedNode& each : placed) {
     if (!kept[each.node]) continue;
@@ -154,9 +187,10 @@ Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene
     if (each.parent != SIZE_MAX) scene.nodes.back().parent = motion.node[each.parent];
   }
   motion.skin.assign(used.size(), kNone);
+  motion.pose.resize(used.size());
   motion.placed.assign(used.size(), glm::dmat4(1));
   for (std::size_t s = 0; s < used.size(); ++s) {
-    if (used[s]) add_skin(gltf, s, world, motion, scene);
+    if (used[s]) add_skin(gltf, s, world, motion, scene, warnings);
   }
   for (Animation& animation : animations) {
     for (AnimationChannel& channel : animation.channels) channel.node = motion.node[channel.node];

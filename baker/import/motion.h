@@ -3,6 +3,7 @@
 #pragma once
 
 #include "nodes.h"
+#include "pose.h"
 
 namespace chandelier::baker {
 
@@ -10,14 +11,15 @@ namespace chandelier::baker {
 struct Motion {
   std::vector<std::uint32_t> node;  // of Scene::nodes, or kNone
   std::vector<std::uint8_t> moves;  // whether an animation moves it or a node above it
-  std::vector<std::uint32_t> skin;  // of Scene::skins, or kNone
-  std::vector<glm::dmat4> placed;   // each skin's: from its mesh to the world, where its first joint puts it
+  std::vector<std::uint32_t> skin;  // of Scene::skins, or kNone: it is not used, or nothing moves its joints
+  std::vector<Pose> pose;           // of each skin that is used and whose joints nothing moves
+  std::vector<glm::dmat4> placed;   // of each other one: from its mesh to the world, where its first joint puts it
 
   /// The number of a node that moves, or kNone.
   std::uint32_t mover(std::size_t gltf_node) const { return moves[gltf_node] ? node[gltf_node] : kNone; }
 };
 
-/// Appends animations, the skins that are used and the nodes that both need. Throws Error.
+/// Appends animations, the skins that are used and that they move, and the nodes that both need. Throws Error.
 Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene& scene, Warnings& warnings);
 
 }  // namespace chandelier::baker

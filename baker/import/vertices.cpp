@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "morph.h"
+
 namespace chandelier::baker {
 namespace {
 
@@ -35,19 +37,6 @@ std::uint32_t pack_color(const float* rgb, std::size_t components) {
     out |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << (8 * c);
   }
   return out;
-}
-
-/// Unit length, or zero where it has no direction.
-glm::vec3 unit_or_zero(const glm::vec3& v) {
-  const glm::dvec3 wide = v;
-  const double length = glm::length(wide);
-  return length > 1e-12 ? glm::vec3(wide / length) : glm::vec3(0);
-}
-
-/// Any unit tangent across the normal.
-glm::vec3 some_tangent(const glm::vec3& n) {
-  const glm::vec3 axis = std::abs(n.x) < 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
-  return glm::normalize(axis - n * glm::dot(n, axis));
 }
 
 glm::vec3 area_normal(const Primitive& primitive, std::size_t triangle) {
@@ -117,6 +106,17 @@ bool fill_block(Attributes& in, std::size_t first, std::size_t count, std::vecto
 
 }  // namespace
 
+glm::vec3 unit_or_zero(const glm::vec3& v) {
+  const glm::dvec3 wide = v;
+  const double length = glm::length(wide);
+  return length > 1e-12 ? glm::vec3(wide / length) : glm::vec3(0);
+}
+
+glm::vec3 some_tangent(const glm::vec3& n) {
+  const glm::vec3 axis = std::abs(n.x) < 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  return glm::normalize(axis - n * glm::dot(n, axis));
+}
+
 Elements attribute_of(const VertexSource& source, const char* name, std::size_t least, std::size_t most) {
   const auto it = source.primitive.attributes.find(name);
   if (it == source.primitive.attributes.end()) return {};
@@ -157,6 +157,7 @@ void read_vertices(const VertexSource& source, Primitive& out) {
   for (const Attribute* each : {&in.position, &in.normal, &in.tangent, &in.uv0, &in.uv1, &in.color}) {
     if (each->not_finite.at() != SIZE_MAX) fail_not_finite(each->elements, each->not_finite.at(), each->where);
   }
+  if (!source.morph_weights.empty() && apply_morphs(source, out)) broken = true;
   if (broken) mend_normals(out);
 }
 

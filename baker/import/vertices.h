@@ -14,10 +14,17 @@ struct VertexSource {
   const DracoPrimitive* draco;  // nullptr, or where some of the attributes are
   const std::string& where;
   std::size_t vertex_count;
+  std::span<const double> morph_weights;  // one per morph target, or none
 };
 
 /// An attribute's elements, one per vertex; a count of 0 where the primitive has none. Throws Error.
 Elements attribute_of(const VertexSource& source, const char* name, std::size_t least, std::size_t most);
+
+/// Unit length, or zero where it has no direction.
+glm::vec3 unit_or_zero(const glm::vec3& v);
+
+/// Any unit tangent across the normal.
+glm::vec3 some_tangent(const glm::vec3& normal);
 
 /// Fills the primitive's vertices; its indices must be there. Throws Error.
 void read_vertices(const VertexSource& source, Primitive& out);

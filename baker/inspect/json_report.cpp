@@ -68,7 +68,9 @@ Json materials(const pack::File& file) {
   for (const pack::Material& material : file.view().materials) {
     list.push_back({{"name", name(file, material.name)},
                     {"alpha_mode", name_of(material.alpha_mode)},
-                    {"double_sided", material.double_sided == 1}});
+                    {"double_sided", material.double_sided == 1},
+                    {"shadowless", material.shadowless == 1},
+                    {"transmission_factor", material.transmission_factor}});
   }
   return list;
 }
@@ -142,7 +144,10 @@ std::string json_report(const std::string& path, const pack::File& file) {
                        {"normal_error_rad", view.bake_info->normal_error_rad},
                        {"uv_error", view.bake_info->uv_error},
                        {"sections", sections(view, summary)},
-                       {"triangles", {{"stored", summary.stored_triangles}, {"drawn", summary.drawn_triangles}}},
+                       {"triangles",
+                        {{"stored", summary.stored_triangles},
+                         {"drawn", summary.drawn_triangles},
+                         {"shadowless", summary.shadowless_triangles}}},
                        {"batches",
                         {{"count", view.batches.size()},
                          {"drawn", view.batch_instances.size()},
@@ -151,6 +156,7 @@ std::string json_report(const std::string& path, const pack::File& file) {
                        {"instances", view.instances.size()},
                        {"dynamic_instances", summary.dynamic_instances},
                        {"skinned_instances", summary.skinned_instances},
+                       {"shadowless_instances", summary.shadowless_instances},
                        {"batch_bvh", to_json(summary.batch_bvh)},
                        {"instance_bvh", to_json(summary.instance_bvh)},
                        {"triangle_bvh", to_json(summary.triangle_bvh)},

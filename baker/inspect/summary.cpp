@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "throws_shadow.h"
+
 namespace chandelier::inspect {
 namespace {
 
@@ -110,13 +112,16 @@ Summary summarize(const pack::File& file) {
     const std::uint64_t drawn = view.batches[draw.batch].index_count / 3;
     summary.drawn_triangles += drawn;
     if (view.instances[draw.instance].dynamic == 0) summary.static_triangles += drawn;
+    if (!pack::throws_shadow(view, draw)) summary.shadowless_triangles += drawn;
   }
   for (const pack::Material& material : view.materials) {
     summary.masked_materials += material.alpha_mode == pack::AlphaMode::mask;
     summary.double_sided_materials += material.double_sided;
+    summary.shadowless_materials += material.shadowless;
   }
   for (const pack::Instance& instance : view.instances) {
     summary.dynamic_instances += instance.dynamic;
+    summary.shadowless_instances += instance.shadowless;
     summary.skinned_instances += instance.skin != pack::none;
   }
   add_lights(view, summary);

@@ -37,10 +37,12 @@ struct Summary {
   std::vector<Stored> stored;  ///< By section_infos.
   std::uint64_t stored_triangles = 0;
   std::uint64_t drawn_triangles = 0;
-  std::uint64_t static_triangles = 0;  ///< Of those, the ones in instances that stand still.
+  std::uint64_t shadowless_triangles = 0;  ///< Of those, the ones that throw no shadow.
+  std::uint64_t static_triangles = 0;      ///< Of those, the ones in instances that stand still.
   Spread batch_triangles;
   std::uint64_t masked_materials = 0;
   std::uint64_t double_sided_materials = 0;
+  std::uint64_t shadowless_materials = 0, shadowless_instances = 0;
   std::array<std::uint64_t, 3> lights_of_type = {};    ///< By LightType.
   std::array<std::uint64_t, 3> lights_of_source = {};  ///< By RangeSource.
   std::uint64_t dynamic_lights = 0, unclustered_lights = 0;

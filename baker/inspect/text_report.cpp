@@ -65,6 +65,11 @@ void put_geometry(Out out, const pack::View& view, const Summary& summary) {
                  summary.closed_batches, share(summary.closed_batches, view.batches.size()));
   fmt::format_to(out, "materials  {}, {} with an alpha mask, {} double-sided\n", view.materials.size(),
                  summary.masked_materials, summary.double_sided_materials);
+  if (summary.shadowless_triangles > 0) {
+    fmt::format_to(out, "no shadow  {} of the drawn triangles ({}): of {} materials and {} instances\n",
+                   summary.shadowless_triangles, share(summary.shadowless_triangles, summary.drawn_triangles),
+                   summary.shadowless_materials, summary.shadowless_instances);
+  }
 }
 
 void put_structures(Out out, const pack::View& view, const Summary& summary) {

@@ -206,7 +206,8 @@ void Renderer::Impl::record_shadow_maps(VkCommandBuffer cmd, const FramePlan& pl
                .first_view = round.first_view,
                .view_count = round.view_count,
                .merged_runs = std::max(1u, scene.opaque_runs),
-               .round = number},
+               .round = number,
+               .casters_only = true},
               shadow_draws);
   timers.end(cmd);
 

@@ -155,7 +155,8 @@ void LightSamples::expose(const std::optional<float>& exposure_ev) {
 
 bool LightSamples::is_lit(uint32_t i, const glm::vec3& place_ws) const {
   ++rays_cast_;
-  if (is_directional(light(i))) return !scene_.rays.first_hit(place_ws, -light(i).direction_ws, far_away_m);
+  if (is_directional(light(i)))
+    return !scene_.rays.first_hit(place_ws, -light(i).direction_ws, far_away_m, rays::Meets::casters);
   // What is nearer to the light than the near plane of its shadow map casts no shadow.
   const glm::vec3 d = place_ws - light(i).position_ws;
   const float distance = glm::length(d);
@@ -170,7 +171,7 @@ float LightSamples::blocked_at(uint32_t i, const glm::vec3& place_ws) const {
   if (distance <= frame::shadow_near_m) return 1.0f;
   const glm::vec3 from = light(i).position_ws + d * (frame::shadow_near_m / distance);
   const float way_m = distance - frame::shadow_near_m - rays::PackRays::end_gap_m(from, place_ws);
-  const auto hit = scene_.rays.first_hit(from, d / distance, std::max(way_m, 1e-6f));
+  const auto hit = scene_.rays.first_hit(from, d / distance, std::max(way_m, 1e-6f), rays::Meets::casters);
   return hit ? (hit->distance_m + frame::shadow_near_m) / distance : 1.0f;
 }
 

@@ -90,8 +90,13 @@ void PackRays::gather_instances() {
   }
 }
 
-bool PackRays::is_masked(uint32_t batch) const {
-  return pack_.materials[pack_.batches[batch].material].alpha_mode == pack::AlphaMode::mask;
+bool PackRays::is_met(uint32_t batch, Meets meets) const {
+  const pack::Material& material = pack_.materials[pack_.batches[batch].material];
+  return material.alpha_mode != pack::AlphaMode::mask && (meets == Meets::surfaces || material.shadowless == 0);
+}
+
+bool PackRays::is_passed(uint32_t instance, Meets meets) const {
+  return meets == Meets::casters && pack_.instances[instance].shadowless != 0;
 }
 
 std::array<glm::vec3, 3> PackRays::corners_ws(uint32_t instance, uint32_t first_index) const {
@@ -106,17 +111,17 @@ std::array<glm::vec3, 3> PackRays::corners_ws(uint32_t instance, uint32_t first_
 
 // t along the way is the same in the world and in the mesh's space, where the way's length is another.
 template <bool any_is_enough>
-bool PackRays::cast_at_instance(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Ray& ray,
-                                Met& met) const {
+bool PackRays::cast_at_instance(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets,
+                                Ray& ray, Met& met) const {
   const glm::mat4x3& m = local_from_world_[instance];
-  if (m == glm::mat4x3(0.0f)) return false;  // loose
+  if (m == glm::mat4x3(0.0f) || is_passed(instance, meets)) return false;  // zero: loose
   Ray ray_ls(m * glm::vec4(from_ws, 1.0f), m * glm::vec4(way_ws, 0.0f), ray.nearest, ray.farthest);
   const pack::Mesh& mesh = pack_.meshes[pack_.instances[instance].mesh];
   const uint32_t end = mesh.first_node + mesh.node_count;
   const bool stops = walk(pack_.triangle_bvh, mesh.first_node, end, ray_ls, [&](uint32_t item) {
     const Triangle& triangle = triangles_[item];
     const float t = ray_ls.meet_triangle(triangle.corners_ls);
-    if (t == INFINITY || is_masked(triangle.batch)) return false;
+    if (t == INFINITY || !is_met(triangle.batch, meets)) return false;
     ray_ls.farthest = t;
     met = {instance, triangle.batch, 3 * pack_.triangle_bvh_items[item].triangle};
     return any_is_enough;
@@ -126,8 +131,9 @@ bool PackRays::cast_at_instance(uint32_t instance, const glm::vec3& from_ws, con
 }
 
 template <bool any_is_enough>
-bool PackRays::cast_at_batch(const pack::BatchInstance& draw, Ray& ray, Met& met) const {
-  if (!ray.meets_box(draw.bounds_min_ws, draw.bounds_max_ws) || is_masked(draw.batch)) return false;
+bool PackRays::cast_at_batch(const pack::BatchInstance& draw, Meets meets, Ray& ray, Met& met) const {
+  if (!ray.meets_box(draw.bounds_min_ws, draw.bounds_max_ws)) return false;
+  if (is_passed(draw.instance, meets) || !is_met(draw.batch, meets)) return false;
   const pack::Batch& batch = pack_.batches[draw.batch];
   for (uint32_t i = batch.first_index; i < batch.first_index + batch.index_count; i += 3) {
     const float t = ray.meet_triangle(corners_ws(draw.instance, i));
@@ -140,9 +146,9 @@ bool PackRays::cast_at_batch(const pack::BatchInstance& draw, Ray& ray, Met& met
 }
 
 template <bool any_is_enough>
-bool PackRays::cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Ray& ray, Met& met) const {
+bool PackRays::cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets, Ray& ray, Met& met) const {
   const auto at_instance = [&](uint32_t instance) {
-    return cast_at_instance<any_is_enough>(instance, from_ws, way_ws, ray, met);
+    return cast_at_instance<any_is_enough>(instance, from_ws, way_ws, meets, ray, met);
   };
   const auto node_count = static_cast<uint32_t>(pack_.instance_bvh.size());
   if (walk(pack_.instance_bvh, 0, node_count, ray,
@@ -151,7 +157,7 @@ bool PackRays::cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Ray& ray,
   for (uint32_t instance : unsorted_instances_)
     if (at_instance(instance)) return true;
   for (uint32_t number : loose_)
-    if (cast_at_batch<any_is_enough>(pack_.batch_instances[number], ray, met)) return true;
+    if (cast_at_batch<any_is_enough>(pack_.batch_instances[number], meets, ray, met)) return true;
   return false;
 }
 
@@ -167,14 +173,15 @@ bool PackRays::blocked(const glm::vec3& from_ws, const glm::vec3& to_ws) const {
   if (!(gap < 0.5f)) return false;
   Ray ray(from_ws, way, gap, 1.0f - gap);
   Met met;
-  return cast<true>(from_ws, way, ray, met);
+  return cast<true>(from_ws, way, Meets::casters, ray, met);
 }
 
-std::optional<Hit> PackRays::first_hit(const glm::vec3& from_ws, const glm::vec3& way_ws, float max_m) const {
+std::optional<Hit> PackRays::first_hit(const glm::vec3& from_ws, const glm::vec3& way_ws, float max_m,
+                                       Meets meets) const {
   const float length = glm::length(way_ws);
   Ray ray(from_ws, way_ws, 0.0f, max_m / length);
   Met met;
-  cast<false>(from_ws, way_ws, ray, met);
+  cast<false>(from_ws, way_ws, meets, ray, met);
   if (met.instance == pack::none) return std::nullopt;
   const auto corners = corners_ws(met.instance, met.first_index);
   // Not normalize(): a sliver's cross product may be too small to be squared.

@@ -21,6 +21,9 @@ struct Hit {
   uint32_t material;
 };
 
+/// What a ray meets: all that is seen, or only what throws a shadow.
+enum class Meets { surfaces, casters };
+
 /// Answers for the triangles of a pack as it rests. What moves is met where it is before it moves. Alpha-masked
 /// materials are never met: what their texture leaves of them is not looked at. Safe to ask from several threads.
 class PackRays {
@@ -28,12 +31,13 @@ class PackRays {
   /// What `pack` points to must outlive it. A pack without hierarchies is searched box by box, which is slow.
   explicit PackRays(const pack::View& pack);
 
-  /// Does a triangle lie strictly between? Both ends are shrunk by end_gap_m(), so that points on surfaces do not meet
-  /// their own.
+  /// Does a triangle that throws a shadow lie strictly between? Both ends are shrunk by end_gap_m(), so that points on
+  /// surfaces do not meet their own.
   bool blocked(const glm::vec3& from_ws, const glm::vec3& to_ws) const;
   /// The first triangle, seen from either side, that lies less than max_m along `way_ws`, of any length but 0. One that
   /// holds `from_ws` may be met at a distance of next to nothing: start off the surface.
-  std::optional<Hit> first_hit(const glm::vec3& from_ws, const glm::vec3& way_ws, float max_m) const;
+  std::optional<Hit> first_hit(const glm::vec3& from_ws, const glm::vec3& way_ws, float max_m,
+                               Meets meets = Meets::surfaces) const;
 
   /// 1e-4 of the distance, or what floats leave uncertain this far from the origin where that is more.
   static float end_gap_m(const glm::vec3& from_ws, const glm::vec3& to_ws);
@@ -56,12 +60,14 @@ class PackRays {
 
   // Each returns whether it may stop: the ray has met something, and that is enough. Shortens the ray to what it meets.
   template <bool any_is_enough>
-  bool cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Ray& ray, Met& met) const;
+  bool cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets, Ray& ray, Met& met) const;
   template <bool any_is_enough>
-  bool cast_at_instance(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Ray& ray, Met& met) const;
+  bool cast_at_instance(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets, Ray& ray,
+                        Met& met) const;
   template <bool any_is_enough>
-  bool cast_at_batch(const pack::BatchInstance& draw, Ray& ray, Met& met) const;
-  bool is_masked(uint32_t batch) const;
+  bool cast_at_batch(const pack::BatchInstance& draw, Meets meets, Ray& ray, Met& met) const;
+  bool is_met(uint32_t batch, Meets meets) const;
+  bool is_passed(uint32_t instance, Meets meets) const;
 
   pack::View pack_;
   std::vector<Triangle> triangles_;            // as triangle_bvh_items

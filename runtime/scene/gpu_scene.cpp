@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "frame_schema.h"
 #include "scene/textures.h"
+#include "throws_shadow.h"
 
 namespace chandelier {
 namespace {
@@ -43,6 +45,8 @@ void upload_runs(const gpu::Device& device, const pack::View& pack, GpuScene& sc
     run_of_batch_instance.insert(run_of_batch_instance.end(), run.count, static_cast<uint32_t>(first_of_run.size()));
     first_of_run.push_back(run.first);
   }
+  for (size_t i = 0; i < run_of_batch_instance.size(); ++i)
+    if (!throws_shadow(pack, pack.batch_instances[i])) run_of_batch_instance[i] |= frame::shadowless_bit;
   scene.material_runs = upload<uint32_t>(device, first_of_run, storage_use, "material runs");
   scene.run_of_batch_instance = upload<uint32_t>(device, run_of_batch_instance, storage_use, "batch instances");
 }

@@ -28,7 +28,7 @@ struct GpuScene {
   gpu::Buffer materials;
   gpu::Buffer uv_transforms;          // ten rows of three floats per material, two for each of its five textures
   gpu::Buffer material_runs;          // pack order: first batch instance of each run
-  gpu::Buffer run_of_batch_instance;  // one u32 each
+  gpu::Buffer run_of_batch_instance;  // one u32 each, with frame::shadowless_bit
   uint32_t batch_instance_count = 0;
 
   std::vector<MaterialRun> runs;

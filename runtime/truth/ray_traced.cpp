@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "parallel.h"
+#include "throws_shadow.h"
 #include "truth/alpha_texture.h"
 
 namespace chandelier::truth {
@@ -79,6 +80,7 @@ AlphaCorner alpha_corner(const pack::View& pack, const pack::Material& material,
 std::map<uint32_t, Casters> gather_casters(const pack::View& pack) {
   std::map<uint32_t, Casters> by_test;
   for (const pack::BatchInstance& placed : pack.batch_instances) {
+    if (!pack::throws_shadow(pack, placed)) continue;
     const pack::Batch& batch = pack.batches[placed.batch];
     const pack::Material& material = pack.materials[batch.material];
     const bool masked = material.alpha_mode == pack::AlphaMode::mask;

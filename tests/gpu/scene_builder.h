@@ -51,6 +51,8 @@ class Scene {
                        const UvTransform& uv_transform = uv_identity);
   /// Adds a mesh, in batches of up to 128 triangles, placed by a matrix that may mirror.
   void add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from_local = glm::mat4(1.0f));
+  /// What was added last throws no shadow.
+  void take_shadow() { contents_.instances.back().shadowless = 1; }
   /// As a pack's.
   pack::Contents contents() const;
   /// Written to a file, which is gone when this returns, and opened.

@@ -194,6 +194,23 @@ TEST(LightAudit, NamesALightInAClosedBulb) {
   }
 }
 
+TEST(LightAudit, LeavesALightInABulbThatThrowsNoShadowInPeace) {
+  for (const bool by_material : {false, true}) {
+    Stage stage;
+    stage.add_room();
+    stage.add_box({-0.05f, 2.95f, -0.05f}, {0.05f, 3.05f, 0.05f});
+    stage.add_light({0, 3, 0});
+    stage.add_light({3, 3, 0});
+    if (by_material) {
+      stage.pack.materials.push_back({.shadowless = 1});
+      stage.pack.batches.back().material = static_cast<std::uint32_t>(stage.pack.materials.size() - 1);
+    } else {
+      stage.pack.instances.back().shadowless = 1;
+    }
+    expect_peace(stage);
+  }
+}
+
 TEST(LightAudit, NamesALightInAWallPlacedByAMirror) {
   for (const float mirror : {1.0f, -1.0f}) {
     Stage stage;

@@ -115,7 +115,8 @@ TEST(Animation, MakesRotationsUnitLengthWithAWarning) {
   EXPECT_EQ(warnings.lines().size(), 1u);
 }
 
-/// The triangle with two joints: node 1 and node 2, which hangs from it; the mesh's own node is elsewhere.
+/// The triangle with two joints: node 1 and node 2, which hangs from it and is animated; the mesh's own node is
+/// elsewhere.
 GltfBuilder skinned_triangle() {
   GltfBuilder gltf = one_triangle();
   gltf.json["nodes"][0]["translation"] = {50, 0, 0};
@@ -132,6 +133,12 @@ GltfBuilder skinned_triangle() {
   attributes["JOINTS_0"] =
       gltf.add_accessor<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 9, 0, 0, 0, 0}, kUnsignedByte, "VEC4", 3);
   attributes["WEIGHTS_0"] = gltf.add_floats({0.25f, 0.75f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
+  const int times = gltf.add_floats({0.5f, 2}, "SCALAR", 1);
+  gltf.json["accessors"][times]["min"] = {0.5};
+  gltf.json["accessors"][times]["max"] = {2};
+  const int turns = gltf.add_floats({0, 0, 0, 1, 0, 0, 0, 1}, "VEC4", 4);
+  gltf.json["animations"] = {{{"samplers", {{{"input", times}, {"output", turns}}}},
+                              {"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}}}}}};
   return gltf;
 }
 
@@ -149,6 +156,17 @@ TEST(Skin, IsKeptWithItsJointsAndItsBindPose) {
   EXPECT_EQ(pack.meshes.at(0).skin_vertex_count, 3u);
 }
 
+TEST(Skin, ThatIsAnimatedSaysWhereItsBindPoseIsNotWhatTheFileShows) {
+  GltfBuilder gltf = skinned_triangle();
+  Warnings none, one;
+  gltf.import(&none);
+  EXPECT_TRUE(none.lines().empty());
+  gltf.json["nodes"][2]["translation"] = {0, 1, 0.5};
+  gltf.import(&one);
+  ASSERT_EQ(one.lines().size(), 1u);
+  EXPECT_NE(one.lines()[0].find("skin 0 'leg': a skin that is animated is not played"), std::string::npos);
+}
+
 TEST(Animation, KeepsAMeshThatGrowsFromNothing) {
   for (const bool above : {false, true}) {  // the mesh's own node, or the one above it
     GltfBuilder gltf = moving_triangle("scale");
@@ -161,7 +179,7 @@ TEST(Animation, KeepsAMeshThatGrowsFromNothing) {
     Warnings warnings;
     const Scene scene = gltf.import(&warnings);
     ASSERT_EQ(scene.instances.size(), 1u) << above;
-    EXPECT_EQ(warnings.lines().size(), 1u);  // of "still", which stays a point
+    EXPECT_EQ(warnings.lines().size(), 1u);                              // of "still", which stays a point
     const pack::Contents pack = gltf.bake({.position_error_m = 0.01f});  // checks the pack too
     ASSERT_EQ(pack.instances.size(), 1u);
     EXPECT_EQ(pack.instances[0].dynamic, 1u);

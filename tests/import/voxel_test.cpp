@@ -165,6 +165,22 @@ TEST(Voxels, HoldNothingThatMoves) {
   EXPECT_TRUE(with_voxels(pack, {}).voxel_grid.empty());
 }
 
+TEST(Voxels, HoldNothingThatThrowsNoShadow) {
+  pack::Contents pack = soup(400, 6).bake();
+  ASSERT_GT(pack.instances.size(), 1u);
+  pack.instances[1].shadowless = 1;
+  for (const VoxelSettings& settings : {VoxelSettings{}, kClip}) {
+    const pack::Contents some = with_voxels(pack, settings);
+    EXPECT_EQ(pack::check(pack::view_of(some)), "");
+    ASSERT_FALSE(some.voxel_runs.empty());
+    for (const pack::VoxelRun& run : some.voxel_runs) EXPECT_NE(run.instance, 1u);
+  }
+  for (pack::Material& material : pack.materials) material.shadowless = 1;
+  const pack::Contents none = with_voxels(pack, {});
+  EXPECT_EQ(pack::check(pack::view_of(none)), "");
+  EXPECT_TRUE(none.voxel_runs.empty());
+}
+
 TEST(Voxels, HoldFlatScenes) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<float> positions = {0, 0, 0, 4, 4, 4, 0, 0, 0, 1, 1, 1, 1.1f, 1.1f, 1.1f, 1, 1, 1};

@@ -216,6 +216,38 @@ TEST(PackRays, AgreeWithEmbreeWithoutHierarchies) {
   expect_agreement(pack::view_of(pack), 1000, 5);
 }
 
+// Two balls, one within the other, which throws no shadow: by its instance, by its material, and found without trees.
+TEST(PackRays, PassWhatThrowsNoShadowWhereTheyAskForCasters) {
+  for (const int way : {0, 1, 2, 3}) {
+    SCOPED_TRACE(way);
+    baker::Scene scene;
+    scene.materials.resize(2);
+    scene.meshes.resize(2);
+    scene.meshes[0].primitives = {ball(24)};
+    scene.meshes[1].primitives = {ball(24)};
+    scene.meshes[1].primitives[0].material = 1;
+    scene.instances = {placed(0, glm::dmat4(1)), placed(1, glm::scale(glm::dmat4(1), glm::dvec3(3)))};
+    pack::Contents pack = bake(std::move(scene));
+    (way % 2 ? pack.instances[1].shadowless : pack.materials[1].shadowless) = 1;
+    if (way >= 2) {
+      pack.instance_bvh = {}, pack.instance_bvh_items = {};
+      pack.triangle_bvh = {}, pack.triangle_bvh_items = {}, pack.triangle_bvh_areas = {};
+      for (pack::Mesh& mesh : pack.meshes) mesh.first_node = mesh.node_count = 0;
+    }
+    const pack::View view = pack::view_of(pack);
+    const PackRays rays(view);
+    const glm::vec3 from(0, 0.1f, 5), towards(0, 0, -1);
+    const auto seen = rays.first_hit(from, towards, 9), caster = rays.first_hit(from, towards, 9, Meets::casters);
+    ASSERT_TRUE(seen && caster);
+    EXPECT_EQ(seen->instance, 1u);
+    EXPECT_NEAR(seen->distance_m, 2, 0.05);
+    EXPECT_EQ(caster->instance, 0u);
+    EXPECT_NEAR(caster->distance_m, 4, 0.05);
+    EXPECT_FALSE(rays.blocked(from, {0, 0.1f, 1.5f}));
+    EXPECT_TRUE(rays.blocked(from, {0, 0.1f, 0}));
+  }
+}
+
 TEST(PackRays, DoNotLeakOutOfAClosedBall) {
   baker::Scene scene;
   scene.materials.emplace_back();

@@ -28,6 +28,7 @@ class Place {
  public:
   Primitive boxes;
   std::vector<baker::Light> lights;
+  bool throws_shadow = true, by_material = false;
 
   uint32_t light(const glm::vec3& position_ws) {
     lights.push_back({.name = std::to_string(lights.size()), .position_ws = position_ws, .range_m = 5.0f});
@@ -49,6 +50,8 @@ class Place {
     scene.materials.emplace_back();
     scene.meshes.emplace_back().primitives = {boxes};
     scene.instances.emplace_back().mesh = 0;
+    scene.instances[0].shadowless = !throws_shadow && !by_material;
+    scene.materials[0].shadowless = !throws_shadow && by_material;
     scene.lights = lights;
     baker::Report report;
     baker::Warnings warnings;
@@ -83,6 +86,17 @@ TEST(Walls, StandBetweenLampsBackToBack) {
   EXPECT_FALSE(place.between(WallTest::rays, left, further));
   EXPECT_FALSE(place.between(WallTest::rays, left, left));
   EXPECT_FALSE(place.between(WallTest::none, left, right));
+}
+
+// Glass, or what its author wants to be looked through by lights.
+TEST(Walls, AreNotWhatThrowsNoShadow) {
+  for (const bool by_material : {false, true}) {
+    Place place = two_rooms();
+    place.throws_shadow = false, place.by_material = by_material;
+    const uint32_t left = place.light({-0.25f, 1.7f, 0}), right = place.light({0.25f, 1.7f, 0});
+    EXPECT_FALSE(place.between(WallTest::rays, left, right));
+    EXPECT_FALSE(place.between(WallTest::voxels, left, right));
+  }
 }
 
 TEST(Walls, LeaveDoorwaysOpen) {

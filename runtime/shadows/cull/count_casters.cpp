@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "throws_shadow.h"
+
 namespace chandelier {
 namespace {
 
@@ -42,6 +44,7 @@ CasterCounts count_casters(Cull cull, std::span<const frame::ShadowView> views, 
   for (const frame::ShadowView& view : views) {
     const auto planes = planes_of(view);
     for (const pack::BatchInstance& candidate : pack.batch_instances) {
+      if (!pack::throws_shadow(pack, candidate)) continue;
       if (cull == Cull::light_frustum && !survives(view, planes, candidate)) continue;
       ++counts.draws;
       counts.triangles += pack.batches[candidate.batch].index_count / 3;

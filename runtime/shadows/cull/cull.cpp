@@ -62,7 +62,8 @@ void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipe
                                        .view_count = input.view_count,
                                        .merged_runs = input.merged_runs,
                                        .round = input.round,
-                                       .keep_order = input.keep_order};
+                                       .keep_order = input.keep_order,
+                                       .casters_only = input.casters_only};
   gpu::bind(cmd, pipeline,
             {gpu::storage(input.views), gpu::storage(scene.batch_instances), gpu::storage(scene.batches),
              gpu::storage(scene.material_runs), gpu::storage(scene.run_of_batch_instance), gpu::storage(lists.draws),

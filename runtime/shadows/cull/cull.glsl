@@ -10,7 +10,7 @@ layout(binding = 0, scalar) readonly buffer Views { ShadowView views[]; };
 layout(binding = 1, scalar) readonly buffer BatchInstances { BatchInstance batch_instances[]; };
 layout(binding = 2, scalar) readonly buffer Batches { Batch batches[]; };
 layout(binding = 3, scalar) readonly buffer MaterialRuns { uint first_of_run[]; };
-layout(binding = 4, scalar) readonly buffer RunOfBatchInstance { uint run_of_batch_instance[]; };
+layout(binding = 4, scalar) readonly buffer RunOfBatchInstance { uint run_of_batch_instance[]; };  // with SHADOWLESS_BIT
 layout(binding = 5, scalar) writeonly buffer Draws { CasterDraw draws[]; };
 layout(binding = 6, scalar) buffer Counts { uint draw_counts[]; };  // one per draw list
 layout(binding = 7, scalar) buffer Counters { CullCounters counters[]; };
@@ -26,10 +26,11 @@ void main() {
   uint view = cull.first_view + thread / cull.batch_instance_count;
   uint number = thread % cull.batch_instance_count;
   BatchInstance candidate = batch_instances[number];
-  bool visible = survives(views[view], candidate);
+  uint run = run_of_batch_instance[number];
+  bool visible = survives(views[view], candidate) && (run & SHADOWLESS_BIT * cull.casters_only) == 0u;
   if (!visible && cull.keep_order == 0u) return;
 
-  uint run = run_of_batch_instance[number];
+  run &= ~SHADOWLESS_BIT;
   bool merged = run < cull.merged_runs;
   uint list = merged ? 0u : run + 1u - cull.merged_runs;
   uint first = merged ? 0u : first_of_run[run];

@@ -42,7 +42,8 @@ struct CullInput {
   uint32_t view_count;
   uint32_t merged_runs;  // 1: lists_by_material; max(1, opaque runs): lists_for_shadows
   uint32_t round;
-  bool keep_order = false;  // needs view_count 1
+  bool keep_order = false;    // needs view_count 1
+  bool casters_only = false;  // leaves out what throws no shadow
 };
 /// Records everything between earlier reads of `lists` and later indirect draws from them.
 void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,

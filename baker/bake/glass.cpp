@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// A shadow map holds light or no light: a surface throws a whole shadow or none, as what it lets through rounds. What
+// that is, KHR_materials_transmission says: factor · texture (red), of what is no metal (1 - factor · texture (blue)).
+#include "glass.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "decode.h"
+
+namespace chandelier::baker {
+namespace {
+
+constexpr float kLeast = 0.5f;      // that passes through glass
+constexpr std::uint32_t kRows = 4;  // a triangle is looked at in the middle of each of its 16 parts
+
+std::int64_t wrapped(std::int64_t texel, std::int64_t size, Wrap wrap) {
+  if (wrap == Wrap::clamp_to_edge) return std::clamp<std::int64_t>(texel, 0, size - 1);
+  const std::int64_t period = wrap == Wrap::repeat ? size : 2 * size;
+  const std::int64_t at = (texel % period + period) % period;
+  return at < size ? at : period - 1 - at;
+}
+
+/// One channel of a texture; 1 everywhere where there is none.
+class Channel {
+ public:
+  Channel(const Scene& scene, const TextureUse& use, std::size_t channel) : use_(use), channel_(channel) {
+    if (use.texture == kNone) return;
+    texture_ = scene.textures[use.texture];
+    texels_ = decode_image(scene.images[texture_.image]);
+  }
+
+  /// At the nearest texel: what is asked is the mean over a triangle.
+  float at(const glm::vec2& uv0, const glm::vec2& uv1) const {
+    if (texels_.rgba.empty()) return 1;
+    const glm::vec3 uv(use_.uv1 ? uv1 : uv0, 1);
+    const std::int64_t x = texel(glm::dot(use_.uv_transform[0], uv), texels_.width, texture_.wrap_u);
+    const std::int64_t y = texel(glm::dot(use_.uv_transform[1], uv), texels_.height, texture_.wrap_v);
+    return static_cast<float>(texels_.rgba[static_cast<std::size_t>(4 * (y * texels_.width + x)) + channel_]) / 255;
+  }
+
+ private:
+  static std::int64_t texel(float coordinate, std::uint32_t size, Wrap wrap) {
+    constexpr double kFarthest = 1e15;  // beyond, a float holds no part of a texel
+    const double at = std::floor(double{coordinate} * size);
+    return wrapped(static_cast<std::int64_t>(std::clamp(at, -kFarthest, kFarthest)), size, wrap);
+  }
+
+  TextureUse use_;
+  std::size_t channel_;
+  Texture texture_;
+  Texels texels_;
+};
+
+/// How much light a material lets through.
+class Transmission {
+ public:
+  Transmission(const Scene& scene, const Material& material)
+      : factor_(material.transmission_factor),
+        metallic_(material.metallic_factor),
+        through_(scene, material.transmission_map, 0),
+        metal_(scene, material.metallic_factor > 0 ? material.metallic_roughness : TextureUse{}, 2) {}
+
+  /// Of a triangle, in the mean.
+  float of(const std::array<const Vertex*, 3>& corners) const {
+    float sum = 0;
+    for (std::uint32_t row = 0; row < kRows; ++row) {
+      for (std::uint32_t i = 0; i < 2 * row + 1; ++i) {
+        const float down = (static_cast<float>(row) + (i % 2 ? 1.0f : 2.0f) / 3) / kRows;
+        const float along = (static_cast<float>(i / 2) + (i % 2 ? 2.0f : 1.0f) / 3) / kRows;
+        sum += at(corners, down - along, along);
+      }
+    }
+    return sum / (kRows * kRows);
+  }
+
+ private:
+  float at(const std::array<const Vertex*, 3>& corners, float b, float c) const {
+    const float a = 1 - b - c;
+    const glm::vec2 uv0 = a * corners[0]->uv0 + b * corners[1]->uv0 + c * corners[2]->uv0;
+    const glm::vec2 uv1 = a * corners[0]->uv1 + b * corners[1]->uv1 + c * corners[2]->uv1;
+    return factor_ * through_.at(uv0, uv1) * (1 - metallic_ * metal_.at(uv0, uv1));
+  }
+
+  float factor_, metallic_;
+  Channel through_, metal_;
+};
+
+/// Which triangles of a primitive are glass.
+std::vector<bool> glass_triangles(const Primitive& primitive, const Transmission& transmission) {
+  std::vector<bool> out;
+  for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t c) { return &primitive.vertices[primitive.indices[i + c]]; };
+    out.push_back(transmission.of({corner(0), corner(1), corner(2)}) >= kLeast);
+  }
+  return out;
+}
+
+/// The triangles that are glass, or those that are not, with the vertices that they need.
+Primitive part_of(const Primitive& whole, const std::vector<bool>& is_glass, bool glass) {
+  Primitive out;
+  out.material = whole.material;
+  out.needs_normals = whole.needs_normals;
+  out.needs_tangents = whole.needs_tangents;
+  out.tangents_from_uv1 = whole.tangents_from_uv1;
+  std::vector<std::uint32_t> numbers(whole.vertices.size(), kNone);
+  for (std::size_t i = 0; i < 3 * is_glass.size(); ++i) {
+    if (is_glass[i / 3] != glass) continue;
+    std::uint32_t& number = numbers[whole.indices[i]];
+    if (number == kNone) {
+      number = static_cast<std::uint32_t>(out.vertices.size());
+      out.vertices.push_back(whole.vertices[whole.indices[i]]);
+      if (!whole.skin_vertices.empty()) out.skin_vertices.push_back(whole.skin_vertices[whole.indices[i]]);
+    }
+    out.indices.push_back(number);
+  }
+  return out;
+}
+
+/// Gives the glass among a material's triangles the material `glass`. Returns how many there are, and how many others.
+std::array<std::uint64_t, 2> split(Scene& scene, std::uint32_t material, std::uint32_t glass) {
+  const Transmission transmission(scene, scene.materials[material]);
+  std::array<std::uint64_t, 2> counts{};
+  for (Mesh& mesh : scene.meshes) {
+    const std::size_t primitives = mesh.primitives.size();
+    for (std::size_t p = 0; p < primitives; ++p) {
+      if (mesh.primitives[p].material != material) continue;
+      const std::vector<bool> is_glass = glass_triangles(mesh.primitives[p], transmission);
+      const auto through = static_cast<std::uint64_t>(std::count(is_glass.begin(), is_glass.end(), true));
+      counts[0] += through;
+      counts[1] += is_glass.size() - through;
+      if (through == 0) continue;
+      if (through < is_glass.size()) {
+        Primitive rest = part_of(mesh.primitives[p], is_glass, false);
+        mesh.primitives[p] = part_of(mesh.primitives[p], is_glass, true);
+        mesh.primitives.push_back(std::move(rest));
+      }
+      mesh.primitives[p].material = glass;
+    }
+  }
+  return counts;
+}
+
+bool has_maps(const Material& material) {
+  const bool may_be_metal = material.metallic_factor > 0 && material.metallic_roughness.texture != kNone;
+  return may_be_metal || material.transmission_map.texture != kNone;
+}
+
+/// Whether any of the material throws no shadow now.
+bool find_glass_of(Scene& scene, std::uint32_t number) {
+  Material& material = scene.materials[number];
+  if (!has_maps(material)) {
+    material.shadowless = material.transmission_factor * (1 - material.metallic_factor) >= kLeast;
+    return material.shadowless;
+  }
+  const std::uint32_t glass = fit_u32(scene.materials.size(), "materials");
+  const auto [through, others] = split(scene, number, glass);
+  if (through == 0) return false;
+  scene.materials.push_back(scene.materials[number]);
+  scene.materials.back().shadowless = true;
+  if (others > 0) return true;
+  for (Mesh& mesh : scene.meshes) {  // the copy is not needed
+    for (Primitive& primitive : mesh.primitives) {
+      if (primitive.material == glass) primitive.material = number;
+    }
+  }
+  scene.materials.pop_back();
+  scene.materials[number].shadowless = true;
+  return true;
+}
+
+}  // namespace
+
+void find_glass(Scene& scene, bool glass_shadows, PassReport& pass, Warnings& warnings) {
+  std::uint64_t found = 0;
+  const auto materials = static_cast<std::uint32_t>(glass_shadows ? 0 : scene.materials.size());
+  for (std::uint32_t m = 0; m < materials; ++m) {
+    const Material& material = scene.materials[m];
+    if (material.shadow || material.transmission_factor < kLeast) continue;
+    const std::string name = material.name.empty() ? material.where : material.name;
+    if (!find_glass_of(scene, m)) continue;
+    ++found;
+    warnings.add("scene", "materials",
+                 "light passes through them, so they throw no shadow (--glass-shadows gives them one)", name);
+  }
+  pass.count("materials", static_cast<double>(found));
+}
+
+}  // namespace chandelier::baker

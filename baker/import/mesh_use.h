@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which meshes the scene shows, and in which shapes.
+#pragma once
+
+#include <compare>
+#include <map>
+
+#include "morph.h"
+#include "motion.h"
+
+namespace chandelier::baker {
+
+/// A glTF mesh in one shape. Nodes that show the same one share it.
+struct MeshShape {
+  std::size_t mesh = 0;
+  std::vector<double> morph_weights;  // one per morph target, or none
+  std::size_t posed_by = SIZE_MAX;    // glTF's number of a skin that nothing moves; SIZE_MAX: of none
+
+  auto operator<=>(const MeshShape&) const = default;
+};
+
+struct MeshUse {
+  std::uint32_t number = kNone;   // of Scene::meshes
+  std::size_t first_node = 0;     // that shows it
+  bool skinned = false;           // by one node at least
+  std::uint32_t joint_count = 0;  // that its vertices ask for; 0 where not all of them have joints
+};
+
+using MeshUses = std::map<MeshShape, MeshUse>;
+
+/// The shape of a node's mesh. It must have one.
+inline MeshShape shape_of(const Gltf& gltf, const Motion& motion, std::size_t number) {
+  const tinygltf::Node& node = gltf.model.nodes[number];
+  const bool posed = node.skin >= 0 && !motion.pose[static_cast<std::size_t>(node.skin)].world_from_bind.empty();
+  return {static_cast<std::size_t>(node.mesh), morph_weights(gltf, number),
+          posed ? static_cast<std::size_t>(node.skin) : SIZE_MAX};
+}
+
+}  // namespace chandelier::baker
