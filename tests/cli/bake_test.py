@@ -146,6 +146,24 @@ class Good(BakeTest):
         self.assertAlmostEqual(light["range_m"], 10, places=5)
         self.assertEqual(light["range_source"], "derived")
 
+    def test_glass_throws_no_shadow_unless_asked_for(self):
+        gltf = triangle()
+        gltf["extensionsRequired"] = gltf["extensionsUsed"] = ["KHR_materials_transmission"]
+        gltf["materials"] = [{"name": "pane", "pbrMetallicRoughness": {"metallicFactor": 0},
+                              "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.75}}}]
+        gltf["meshes"][0]["primitives"][0]["material"] = 0
+        scene = self.write("scene.gltf", gltf)
+        done = self.run_bake("-q", scene, "-o", self.pack)
+        self.assertEqual(done.stderr, "chandelier-bake: warning: scene: materials: light passes through them, so they "
+                                      "throw no shadow (--glass-shadows gives them one) (pane)\n")
+        self.assertTrue(self.inspect()["materials"][0]["shadowless"])
+        report = self.folder / "report.json"
+        self.bake("-q", scene, "--glass-shadows", "--json", report)
+        self.assertFalse(self.inspect()["materials"][0]["shadowless"])
+        self.assertEqual(self.inspect()["materials"][0]["transmission_factor"], 0.75)
+        self.assertEqual(json.loads(report.read_text())["settings"]["glass-shadows"], "true")
+        self.assertIn("--glass-shadows", self.run_bake("--help").stdout)
+
     def test_help_names_defaults_and_examples(self):
         done = self.run_bake("--help")
         self.assertEqual((done.returncode, done.stderr), (0, ""))

@@ -77,6 +77,28 @@ class Entries(CacheTool):
         _, report = self.bake(self.scene, self.rig, "--batch-triangles", "8", "--cache", self.cache)
         self.assertEqual(len(self.entries("geometry")), geometry + 3)
 
+    def test_what_throws_no_shadow_is_part_of_it(self):
+        glass = {"KHR_materials_transmission": {"transmissionFactor": 1}}
+        pane = {"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": glass}
+        self.cached()
+        plain = json.loads(self.scene.read_text())
+        material = next(each["material"] for each in plain["meshes"][plain["nodes"][0]["mesh"]]["primitives"])
+        made = len(self.entries("geometry"))
+        for change, options, new in (
+            (lambda gltf: gltf["nodes"][0].update(extras={"chandelier": {"shadow": False}}), (), 1),
+            (lambda gltf: gltf["materials"][material].update(extras={"chandelier": {"shadow": False}}), (), 1),
+            (lambda gltf: gltf["materials"][material].update(pane), (), 1),
+            (lambda gltf: gltf["materials"][material].update(pane), ("--glass-shadows",), 1),
+            (lambda gltf: gltf["materials"][material].update(pane), (), 0),
+        ):
+            gltf = json.loads(json.dumps(plain))
+            change(gltf)
+            self.scene.write_text(json.dumps(gltf))
+            kept, _ = self.bake(self.scene, self.rig, "--cache", self.cache, *options)
+            made += new
+            self.assertEqual(len(self.entries("geometry")), made)
+            self.assertTrue(kept == self.bake(self.scene, self.rig, *options)[0])
+
     def test_what_does_not_is_none(self):
         self.cached()
         before = self.entries("geometry")
