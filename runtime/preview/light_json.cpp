@@ -174,6 +174,11 @@ void read_lights(const Json& json, Request& request) {
   lights.priority = columns.bytes(
       "priority", [](const Json& v, const std::string& w) { return static_cast<uint8_t>(whole(v, w, 0, 255)); });
   lights.group = columns.groups();
+  if (!json.contains("range_m")) return;
+  for (size_t light = 0; light < json["range_m"].size(); ++light) {
+    const bool directional = json.contains("type") && json["type"][light] == "directional";
+    request.zero_ranges += !directional && json["range_m"][light] == 0;
+  }
 }
 
 void read_settings(const Json& json, ChandelierPreviewSettings& settings) {

@@ -18,6 +18,7 @@ struct Request {
   std::vector<std::vector<float>> floats;
   std::vector<std::vector<uint8_t>> bytes;
   std::vector<int32_t> groups;
+  uint32_t zero_ranges = 0;  // lights with an end whose range_m is 0, which stands for none
 };
 
 /// Throws std::runtime_error, one line: where, what, and the offending value.

@@ -23,7 +23,7 @@ constexpr const char* footer = R"(Input, every part optional:
               "direction": [[0, -1, 0], [0, -1, 0]],       the way each shines; spot and directional lights need one
               "intensity": [50, 80],                       candela, or lux [1]
               "color": [[1, 1, 1], [1, 0.8, 0.6]],         linear [white]
-              "range_m": [6, null],                        null or 0: as chandelier-bake derives it [all null]
+              "range_m": [6, null],                        null: as chandelier-bake derives it [all null]
               "spot_outer_rad": [0, 0.6],                  half angle [0.7854]
               "radius_m": [0.1, 0],                        of what shines; a spot's softness adds cube faces [0]
               "dynamic": [false, true], "cluster": [true, true], "shadow": [true, true], "priority": [128, 200],
@@ -69,6 +69,12 @@ nlohmann::json parse(const std::string& text) {
 
 std::string selection_of(const std::string& text) {
   const Request request = read_request(parse(text));
+  if (request.zero_ranges > 0)
+    std::fprintf(
+        stderr,
+        "chandelier-lights: warning: lights.range_m: 0 is taken as none, so that the range is derived; null says "
+        "so without a warning (%u of %u)\n",
+        request.zero_ranges, request.lights.count);
   const uint32_t count = request.lights.count;
   std::vector<uint32_t> centers(count);
   std::vector<float> ranges(count);

@@ -62,6 +62,15 @@ class Program(unittest.TestCase):
         self.assertEqual((bill["shadow_maps"], bill["shadow_views"], bill["shadow_bytes"], bill["d_init_m"]),
                          (1, 6, 6 << 20, 0.5))
 
+    def test_a_range_of_zero_is_derived_with_a_warning(self):
+        request = {"lights": {"position": [[0, 0, 0], [1, 0, 0], [2, 0, 0]], "type": ["point", "point", "directional"],
+                              "direction": [[0, -1, 0]] * 3, "range_m": [0, 5, 0]}}
+        done = lights(stdin=json.dumps(request))
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stderr, r"\Achandelier-lights: warning: lights.range_m: 0 is taken as none[^\n]* \(1 of 3\)\n\Z")
+        request["lights"]["range_m"][0] = None
+        self.assertEqual(self.selection(request), json.loads(done.stdout))
+
     def test_bad_input_is_one_line_with_its_place(self):
         place = {"position": [[0, 0, 0], [1, 0, 0]]}
         for request, because in (

@@ -196,6 +196,8 @@ def _request(table, settings, camera):
     lights = {name: values.tolist() for name, values in columns.items()}
     if "type" in lights:
         lights["type"] = [TYPES[number] if number < len(TYPES) else number for number in lights["type"]]
+    if "range_m" in lights:
+        lights["range_m"] = [metres or None for metres in lights["range_m"]]  # 0: to be derived
     flags = np.asarray(columns.get("flags", np.zeros(count, np.uint8)))
     lights.pop("flags", None)
     lights["dynamic"] = ((flags & DYNAMIC) != 0).tolist()
