@@ -131,19 +131,48 @@ void check_outputs(const baker::Options& options) {
   }
 }
 
+void import_all(const baker::Options& options, const baker::Progress& progress, baker::Scene& scene,
+                baker::Warnings& warnings, baker::PassReport& pass) {
+  baker::ImportCounts all;
+  for (const std::filesystem::path& input : options.inputs) {
+    progress.next("reading " + input.string());
+    const baker::ImportCounts counts =
+        with_memory_for(input.string(), [&] { return baker::import_gltf(input, scene, warnings, options.import); });
+    all.has_scene = all.has_scene || counts.has_scene;
+    all.hidden_nodes += counts.hidden_nodes;
+    all.scenes_left_out += counts.scenes_left_out;
+    all.converted_materials += counts.converted_materials;
+  }
+  if (!options.import.scene.empty() && !all.has_scene) {
+    baker::fail("--scene", "no input has such a scene (" + baker::shortened(options.import.scene, 80) + ")");
+  }
+  pass.count("hidden_nodes", static_cast<double>(all.hidden_nodes));
+  pass.count("scenes_left_out", static_cast<double>(all.scenes_left_out));
+  pass.count("converted_materials", static_cast<double>(all.converted_materials));
+}
+
+/// A pack that shows nothing is more likely a mistake than a wish.
+void warn_of_nothing(const pack::Contents& pack, baker::Warnings& warnings) {
+  if (pack.bake_info.instanced_triangles == 0) {
+    warnings.add("scene", "triangles", "there are none, so that nothing will be seen");
+  }
+  if (pack.lights.empty()) {
+    warnings.add("scene", "lights",
+                 "there are none, so that it will be black: bake a glTF with lights as a second input "
+                 "(chandelier-bake SCENE LIGHTS -o PACK), or play it with --headlight or --ambient");
+  }
+}
+
 pack::Contents make_pack(const baker::Options& options, const baker::Progress& progress, baker::Warnings& warnings,
                          baker::Cache& cache, Outcome& outcome) {
   baker::Scene scene;
-  outcome.report.run("import", [&](baker::PassReport&) {
-    for (const std::filesystem::path& input : options.inputs) {
-      progress.next("reading " + input.string());
-      with_memory_for(input.string(), [&] { baker::import_gltf(input, scene, warnings); });
-    }
-  });
+  outcome.report.run("import", [&](baker::PassReport& pass) { import_all(options, progress, scene, warnings, pass); });
   outcome.files_read = scene.files_read;
   for (const auto& output : outputs_of(options)) refuse_overwriting_an_input(outcome.files_read, output);
-  return with_memory_for(
+  pack::Contents pack = with_memory_for(
       "scene", [&] { return baker::bake(std::move(scene), options.bake, progress, outcome.report, warnings, &cache); });
+  warn_of_nothing(pack, warnings);
+  return pack;
 }
 
 /// Writes what commit() then puts in its place, and fills in `outcome`. The check runs while the disk takes what was

@@ -16,6 +16,7 @@ constexpr const char* kBakingGroup = "Baking";
 constexpr const char* kExamples = R"(Examples:
   chandelier-bake scene.glb -o scene.chandelier
   chandelier-bake hall.gltf lamps.gltf -o hall.chandelier     a scene and its lights from two files
+  chandelier-bake house.gltf -o upper.chandelier --scene "upper floor"     one scene of several in the file
   chandelier-bake city.gltf -o city.chandelier --batch-triangles 128 --range-threshold 0.2
   chandelier-bake hall.gltf -o hall.chandelier --cache ~/.cache/chandelier --depfile hall.d     in a build
   chandelier-bake hall.gltf -o hall.chandelier --json -                                         for a program
@@ -99,6 +100,10 @@ std::string check_path(const std::string& text) {
   return text.empty() ? "must be a path ('')" : "";
 }
 
+std::string check_scene(const std::string& text) {
+  return text.empty() ? "must be a scene's name or number ('')" : "";
+}
+
 template <int Least, int Most>
 std::string check_whole_number(const std::string& text) {
   int value = 0;
@@ -125,6 +130,8 @@ void add_image_options(CLI::App& app, ImageSettings& images) {
                  "Halve images until neither side is longer than this, texels; 0 sets no limit")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<0, 16384>, ""));
+  app.add_flag("--strict", images.strict,
+               "Refuse damaged images, which are else baked with a warning as far as they can be decoded");
 }
 
 /// What a build system wants of any tool.
@@ -171,6 +178,11 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.add_option("SCENE", options.inputs, "glTF 2.0 files, .gltf or .glb")->required();
   app.add_option("-o,--output", options.output, "The pack to write, PACK.chandelier")->required();
   app.option_defaults()->group(kBakingGroup);
+  app.add_option(
+         "--scene", options.import.scene,
+         "Which scene of a glTF with several, by name or else by number from 0 [the one that the file shows first]")
+      ->type_name("NAME|N")
+      ->check(CLI::Validator(check_scene, ""));
   app.add_option("--batch-triangles", options.bake.batch_triangles,
                  "Most triangles in a batch, a multiple of 4, 4 to 512")
       ->capture_default_str()

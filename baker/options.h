@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "bake/bake.h"
+#include "import/import.h"
 
 namespace chandelier::baker {
 
 struct Options {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
+  ImportSettings import;
   BakeSettings bake;
   bool compress = false;                                      // sections take the codecs that make them smallest
   std::vector<std::pair<std::string, std::string>> settings;  // the same as text: each option's name and value

@@ -59,11 +59,26 @@ struct MeshInstance {
 enum class Wrap { repeat, clamp_to_edge, mirrored_repeat };
 enum class Filter { nearest, linear };
 
-/// An image as its file has it: PNG or JPEG bytes.
+/// A material of KHR_materials_pbrSpecularGlossiness: factors that scale the texels of two images, linear, each of them
+/// white where there is no image.
+struct SpecularGlossiness {
+  glm::vec3 diffuse_factor{1};
+  glm::vec3 specular_factor{1};
+  float glossiness_factor = 1;
+  std::uint32_t diffuse = kNone;              // of Scene::images: RGB sRGB, and alpha, which stays as it is
+  std::uint32_t specular_glossiness = kNone;  // RGB sRGB, alpha glossiness
+
+  bool operator==(const SpecularGlossiness&) const = default;
+};
+
+/// An image as its file has it, PNG, JPEG or WebP bytes; or one without bytes that is converted from others: as a
+/// colour it is the material's base colour and alpha, as data its roughness (G) and metallic (B).
 struct EncodedImage {
   std::string name;
   std::string where;  // for messages: file and image
   std::vector<std::uint8_t> bytes;
+  std::string file = {};  // the first part of `where`
+  std::optional<SpecularGlossiness> converted_from = {};
 };
 
 struct Texture {

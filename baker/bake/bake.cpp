@@ -106,7 +106,9 @@ pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress&
   pack::Contents pack;
   Strings strings(pack.strings);
   std::vector<ImageRequest> requests;
-  report.run("glass", [&](PassReport& pass) { find_glass(scene, settings.glass_shadows, pass, warnings); });
+  report.run("glass", [&](PassReport& pass) {
+    find_glass(scene, settings.glass_shadows, settings.images.strict, pass, warnings);
+  });
   report.run("materials", [&](PassReport& pass) {
     requests = make_materials(scene, settings.images.textures != TextureMode::none, strings, pack);
     pass.bytes = bytes_of(pack.materials, pack.textures);
@@ -119,7 +121,7 @@ pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress&
   });
   find_or_bake_geometry(scene, settings, progress, report, kept, strings, pack);
   report.run("images", [&](PassReport& pass) {
-    make_images(scene, requests, settings.images, progress, kept, pass, strings, pack);
+    make_images(scene, requests, settings.images, progress, kept, pass, warnings, strings, pack);
     pass.bytes = bytes_of(pack.images, pack.image_data);
   });
   bake_lights(scene, settings, report, warnings, strings, pack);

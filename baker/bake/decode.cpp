@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks PNG and JPEG files and has them decoded by chandelier_images.so, which is loaded for the first of them.
+// Checks PNG, JPEG and WebP files and has them decoded by chandelier_images.so, which is loaded for the first of them.
 #include "decode.h"
 
 #include <dlfcn.h>
@@ -15,6 +15,7 @@
 #include "jpeg.h"
 #include "pack_schema.h"
 #include "png.h"
+#include "webp.h"
 
 namespace chandelier::baker {
 namespace {
@@ -33,11 +34,13 @@ bool is_png(const EncodedImage& image) {
 bool is_jpeg(const EncodedImage& image) {
   return starts_with(image.bytes, "\xFF\xD8\xFF");
 }
+bool is_webp(const EncodedImage& image) {
+  return starts_with(image.bytes, "RIFF");
+}
 
 /// Formats that glTF extensions bring.
 std::string name_of_format(const EncodedImage& image) {
   if (starts_with(image.bytes, "\xABKTX 20")) return " but KTX2";
-  if (starts_with(image.bytes, "RIFF")) return " but WebP";
   if (starts_with(image.bytes, "DDS ")) return " but DDS";
   return "";
 }
@@ -68,6 +71,54 @@ DecodeFunction load_decoder() {
   return *static_cast<const DecodeFunction*>(decoder);
 }
 
+DecodedImage decode_file(const Bytes& bytes, ImageFormat format, const std::string& where) {
+  static const DecodeFunction decode = load_decoder();
+  DecodedImage decoded = decode(bytes, format, pack::max_image_size);
+  if (decoded.fault.empty()) check_image_size(decoded.width, decoded.height, where);
+  if (decoded.fault.empty() && decoded.values.empty()) {
+    decoded.fault = "not 1 to 4 channels (" + std::to_string(decoded.channels) + ")";
+  }
+  return decoded;
+}
+
+/// OpenImageIO multiplies a WebP's colours by its alpha, whatever it is asked for. So they come from a copy without.
+DecodedImage decode_webp(const EncodedImage& image) {
+  DecodedImage decoded = decode_file(image.bytes, ImageFormat::webp, image.where);
+  if (decoded.channels != 4 || !decoded.fault.empty()) return decoded;
+  const DecodedImage opaque = decode_file(webp_without_alpha(image.bytes), ImageFormat::webp, image.where);
+  if (!opaque.fault.empty() || opaque.channels != 3 || opaque.values.size() / 3 != decoded.values.size() / 4) {
+    decoded.fault = "its alpha cannot be told from its colours";
+    return decoded;
+  }
+  for (std::size_t i = 0; i < opaque.values.size() / 3; ++i) {
+    std::copy_n(opaque.values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                decoded.values.begin() + static_cast<std::ptrdiff_t>(4 * i));
+  }
+  return decoded;
+}
+
+/// A damaged file with less than a byte for 2048 texels, which no format comes near, claims a size and has no picture.
+void refuse_empty(const EncodedImage& image, const std::string& damage) {
+  if (!damage.empty() && claimed_texels(image) / 2048 > image.bytes.size()) fail(image.where, damage);
+}
+
+/// With what is wrong with the file as a whole in `damage`.
+DecodedImage decode_any(const EncodedImage& image, std::string& damage) {
+  if (is_png(image)) {
+    const Bytes png = essential_png(image.bytes, image.where, damage);
+    refuse_empty(image, damage);
+    return decode_file(png, ImageFormat::png, image.where);
+  }
+  if (is_webp(image)) return decode_webp(image);
+  if (!is_jpeg(image)) {
+    const std::string size = std::to_string(image.bytes.size());
+    fail(image.where, "is neither PNG, JPEG nor WebP" + name_of_format(image) + " (" + size + " bytes)");
+  }
+  if (!is_whole_jpeg(image.bytes)) damage = "JPEG is cut short (" + std::to_string(image.bytes.size()) + " bytes)";
+  refuse_empty(image, damage);
+  return decode_file(image.bytes, ImageFormat::jpeg, image.where);
+}
+
 }  // namespace
 
 void check_image_size(std::int64_t width, std::int64_t height, const std::string& where) {
@@ -76,24 +127,18 @@ void check_image_size(std::int64_t width, std::int64_t height, const std::string
                   "x" + std::to_string(height) + ")");
 }
 
-Texels decode_image(const EncodedImage& image) {
-  if (!is_png(image) && !is_jpeg(image)) {
-    const std::string size = std::to_string(image.bytes.size());
-    fail(image.where, "is neither PNG nor JPEG" + name_of_format(image) + " (" + size + " bytes)");
+DecodedTexels decode_image(const EncodedImage& image) {
+  std::string damage;
+  DecodedImage decoded = decode_any(image, damage);
+  if (damage.empty()) damage = decoded.damage;
+  if (!decoded.fault.empty()) {
+    fail(image.where, damage.empty() ? "cannot be decoded: " + shortened(decoded.fault, 200) : damage);
   }
-  if (is_jpeg(image)) check_jpeg(image.bytes, image.where);
-  const std::vector<std::uint8_t> png = is_png(image) ? essential_png(image.bytes, image.where) : Bytes();
-  const std::vector<std::uint8_t>& bytes = is_png(image) ? png : image.bytes;
-  static const DecodeFunction decode = load_decoder();
-  DecodedImage decoded = decode(bytes, is_png(image), pack::max_image_size);
-  if (decoded.fault.empty()) check_image_size(decoded.width, decoded.height, image.where);
-  if (decoded.fault.empty() && decoded.values.empty()) {
-    decoded.fault = "not 1 to 4 channels (" + std::to_string(decoded.channels) + ")";
-  }
-  if (!decoded.fault.empty()) fail(image.where, "cannot be decoded: " + shortened(decoded.fault, 200));
-  return {static_cast<std::uint32_t>(decoded.width), static_cast<std::uint32_t>(decoded.height),
-          to_rgba(std::move(decoded.values), std::size_t(decoded.width) * std::size_t(decoded.height),
-                  static_cast<std::size_t>(decoded.channels))};
+  refuse_empty(image, damage);
+  const std::size_t texels = std::size_t(decoded.width) * std::size_t(decoded.height);
+  return {{static_cast<std::uint32_t>(decoded.width), static_cast<std::uint32_t>(decoded.height),
+           to_rgba(std::move(decoded.values), texels, static_cast<std::size_t>(decoded.channels))},
+          shortened(damage, 200)};
 }
 
 const std::string& decoder_code() {
@@ -105,7 +150,8 @@ const std::string& decoder_code() {
 }
 
 std::uint64_t claimed_texels(const EncodedImage& image) {
-  return is_png(image) ? png_texels(image.bytes) : is_jpeg(image) ? jpeg_texels(image.bytes) : 0;
+  if (is_png(image)) return png_texels(image.bytes);
+  return is_jpeg(image) ? jpeg_texels(image.bytes) : is_webp(image) ? webp_texels(image.bytes) : 0;
 }
 
 }  // namespace chandelier::baker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG and JPEG bytes into texels.
+// PNG, JPEG and WebP bytes into texels.
 #pragma once
 
 #include <string>
@@ -12,8 +12,15 @@ namespace chandelier::baker {
 /// Throws Error above 16384 texels, or below 1.
 void check_image_size(std::int64_t width, std::int64_t height, const std::string& where);
 
-/// Throws Error for what is neither PNG nor JPEG, is damaged or too large.
-Texels decode_image(const EncodedImage& image);
+/// An image, and what is wrong with its file where that left something to see, as it does in viewers: part of the
+/// texels may then be made up.
+struct DecodedTexels {
+  Texels texels;
+  std::string damage;
+};
+
+/// Throws Error for what is neither PNG, JPEG nor WebP, cannot be decoded or is too large.
+DecodedTexels decode_image(const EncodedImage& image);
 
 /// What decodes, as it lies on the disk: equal ones decode alike. Empty where it is missing.
 const std::string& decoder_code();

@@ -1,25 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
-// chandelier_images.so: PNG and JPEG through OpenImageIO.
+// chandelier_images.so: PNG, JPEG and WebP through OpenImageIO.
 #include "decode_module.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <string_view>
+
 namespace {
 
 using chandelier::baker::DecodedImage;
+using chandelier::baker::ImageFormat;
 
-DecodedImage decode(const std::vector<std::uint8_t>& file, bool is_png, std::int64_t max_size) {
+/// A name by which OpenImageIO finds its reader.
+const char* name_of(ImageFormat format) {
+  switch (format) {
+    case ImageFormat::png:
+      return "image.png";
+    case ImageFormat::jpeg:
+      return "image.jpg";
+    default:
+      return "image.webp";
+  }
+}
+
+/// The first of OpenImageIO's lines, for it says things twice, without the name that it was given and what is no news.
+std::string first_line(const std::string& text, ImageFormat format) {
+  constexpr std::string_view kNoNews = "JPEG error: ";
+  std::string line = text.substr(0, text.find('\n'));
+  if (line.starts_with(kNoNews)) line.erase(0, kNoNews.size());
+  const std::string name = std::string(" (\"") + name_of(format) + "\")";
+  if (line.ends_with(name)) line.resize(line.size() - name.size());
+  return line.empty() ? "unknown" : line;
+}
+
+DecodedImage decode(const std::vector<std::uint8_t>& file, ImageFormat format, std::int64_t max_size) {
   DecodedImage out;
   OIIO::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not premultiplied
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(file.data()), file.size());
   void* proxy = &memory;  // among the hints: the JPEG reader forgets open()'s own argument
   hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const auto input = OIIO::ImageInput::open(is_png ? "image.png" : "image.jpg", &hints, &memory);
+  const auto input = OIIO::ImageInput::open(name_of(format), &hints, &memory);
   if (!input) {
-    out.fault = OIIO::geterror();
-    if (out.fault.empty()) out.fault = "unknown";
+    out.fault = first_line(OIIO::geterror(), format);
     return out;
   }
   input->threads(1);  // images are decoded side by side already
@@ -30,10 +54,12 @@ DecodedImage decode(const std::vector<std::uint8_t>& file, bool is_png, std::int
   const auto in_range = [](std::int64_t value, std::int64_t most) { return value >= 1 && value <= most; };
   if (!in_range(out.width, max_size) || !in_range(out.height, max_size) || !in_range(out.channels, 4)) return out;
   out.values.resize(static_cast<std::size_t>(out.width * out.height * out.channels));
-  // libjpeg goes on with grey after damage, and only warns: the reader keeps its first warning as its error.
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, out.values.data()) || input->has_error()) {
-    out.fault = input->geterror();
-    if (out.fault.empty()) out.fault = "unknown";
+  const bool read = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, out.values.data());
+  // libjpeg goes on with grey after damage, and only warns: the reader keeps its warnings as its error.
+  if (!read) {
+    out.fault = first_line(input->geterror(), format);
+  } else if (input->has_error()) {
+    out.damage = first_line(input->geterror(), format);
   }
   return out;
 }

@@ -10,15 +10,19 @@
 
 namespace chandelier::baker {
 
+enum class ImageFormat { png, jpeg, webp };
+
 struct DecodedImage {
   std::int64_t width = 0, height = 0;
   int channels = 0;
-  std::vector<std::uint8_t> values;  // as stored: rows from the top, not premultiplied
-  std::string fault;                 // what is wrong, in OpenImageIO's words; or nothing
+  std::vector<std::uint8_t> values;  // as stored: rows from the top, not premultiplied, but for WebP's alpha
+  std::string fault;                 // why there are none, in OpenImageIO's words; or nothing
+  std::string damage;                // what the decoder noticed and went on after, likewise
 };
 
-/// Of a whole PNG or JPEG file. There are no values where a side is not 1 to `max_size` or channels are not 1 to 4.
-using DecodeFunction = DecodedImage (*)(const std::vector<std::uint8_t>& file, bool is_png, std::int64_t max_size);
+/// Of a whole file. There are no values where a side is not 1 to `max_size` or channels are not 1 to 4.
+using DecodeFunction = DecodedImage (*)(const std::vector<std::uint8_t>& file, ImageFormat format,
+                                        std::int64_t max_size);
 
 /// The only thing that the module exports: a DecodeFunction under this name.
 inline constexpr const char* decode_symbol = "chandelier_decode_image";

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "decode.h"
+#include "decode_scene.h"
 
 namespace chandelier::baker {
 namespace {
@@ -28,8 +28,13 @@ class Channel {
   Channel(const Scene& scene, const TextureUse& use, std::size_t channel) : use_(use), channel_(channel) {
     if (use.texture == kNone) return;
     texture_ = scene.textures[use.texture];
-    texels_ = decode_image(scene.images[texture_.image]);
+    SceneTexels decoded = decode_image(scene, texture_.image);
+    damage_ = decoded.damage;
+    texels_ = decoded.as(ImageUse::data);
   }
+
+  /// What is wrong with the file; or nothing.
+  const std::string& damage() const { return damage_; }
 
   /// At the nearest texel: what is asked is the mean over a triangle.
   float at(const glm::vec2& uv0, const glm::vec2& uv1) const {
@@ -51,6 +56,7 @@ class Channel {
   std::size_t channel_;
   Texture texture_;
   Texels texels_;
+  std::string damage_;
 };
 
 /// How much light a material lets through.
@@ -61,6 +67,9 @@ class Transmission {
         metallic_(material.metallic_factor),
         through_(scene, material.transmission_map, 0),
         metal_(scene, material.metallic_factor > 0 ? material.metallic_roughness : TextureUse{}, 2) {}
+
+  /// What is wrong with the map of what passes; the other is looked at with all images.
+  const std::string& damage() const { return through_.damage(); }
 
   /// Of a triangle, in the mean.
   float of(const std::array<const Vertex*, 3>& corners) const {
@@ -119,8 +128,13 @@ Primitive part_of(const Primitive& whole, const std::vector<bool>& is_glass, boo
 }
 
 /// Gives the glass among a material's triangles the material `glass`. Returns how many there are, and how many others.
-std::array<std::uint64_t, 2> split(Scene& scene, std::uint32_t material, std::uint32_t glass) {
+std::array<std::uint64_t, 2> split(Scene& scene, std::uint32_t material, std::uint32_t glass, bool strict,
+                                   Warnings& warnings) {
   const Transmission transmission(scene, scene.materials[material]);
+  if (!transmission.damage().empty()) {
+    const Texture& map = scene.textures[scene.materials[material].transmission_map.texture];
+    tell_damage(scene.images[map.image], transmission.damage(), strict, warnings);
+  }
   std::array<std::uint64_t, 2> counts{};
   for (Mesh& mesh : scene.meshes) {
     const std::size_t primitives = mesh.primitives.size();
@@ -148,14 +162,14 @@ bool has_maps(const Material& material) {
 }
 
 /// Whether any of the material throws no shadow now.
-bool find_glass_of(Scene& scene, std::uint32_t number) {
+bool find_glass_of(Scene& scene, std::uint32_t number, bool strict, Warnings& warnings) {
   Material& material = scene.materials[number];
   if (!has_maps(material)) {
     material.shadowless = material.transmission_factor * (1 - material.metallic_factor) >= kLeast;
     return material.shadowless;
   }
   const std::uint32_t glass = fit_u32(scene.materials.size(), "materials");
-  const auto [through, others] = split(scene, number, glass);
+  const auto [through, others] = split(scene, number, glass, strict, warnings);
   if (through == 0) return false;
   scene.materials.push_back(scene.materials[number]);
   scene.materials.back().shadowless = true;
@@ -172,14 +186,14 @@ bool find_glass_of(Scene& scene, std::uint32_t number) {
 
 }  // namespace
 
-void find_glass(Scene& scene, bool glass_shadows, PassReport& pass, Warnings& warnings) {
+void find_glass(Scene& scene, bool glass_shadows, bool strict, PassReport& pass, Warnings& warnings) {
   std::uint64_t found = 0;
   const auto materials = static_cast<std::uint32_t>(glass_shadows ? 0 : scene.materials.size());
   for (std::uint32_t m = 0; m < materials; ++m) {
     const Material& material = scene.materials[m];
     if (material.shadow || material.transmission_factor < kLeast) continue;
     const std::string name = material.name.empty() ? material.where : material.name;
-    if (!find_glass_of(scene, m)) continue;
+    if (!find_glass_of(scene, m, strict, warnings)) continue;
     ++found;
     warnings.add("scene", "materials",
                  "light passes through them, so they throw no shadow (--glass-shadows gives them one)", name);

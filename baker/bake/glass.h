@@ -10,7 +10,8 @@ namespace chandelier::baker {
 
 /// Marks materials that let half of the light through or more as shadowless, unless their author has said what they do
 /// (Material::shadow). Where a texture decides, triangles of glass get a material of their own. One warning names all
-/// of them. With `glass_shadows` nothing happens. Throws Error where a texture that decides cannot be decoded.
-void find_glass(Scene& scene, bool glass_shadows, PassReport& pass, Warnings& warnings);
+/// of them. With `glass_shadows` nothing happens. Throws Error where a texture that decides cannot be decoded, or
+/// is damaged and that is `strict`.
+void find_glass(Scene& scene, bool glass_shadows, bool strict, PassReport& pass, Warnings& warnings);
 
 }  // namespace chandelier::baker

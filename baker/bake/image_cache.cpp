@@ -16,6 +16,7 @@ using Json = nlohmann::json;
 std::string read_entry(const CacheEntry& entry, std::size_t request_count, MadeImages& made) {
   const pack::View& view = entry.pack.view();
   const Json notes = Json::parse(entry.notes);
+  made.damage = notes.at("damage").get<std::string>();
   made.of_request = notes.at("of_request").get<std::vector<std::size_t>>();
   const Json& images = notes.at("images");
   if (made.of_request.size() != request_count || images.size() != view.images.size()) return "has other images";
@@ -34,14 +35,35 @@ std::string read_entry(const CacheEntry& entry, std::size_t request_count, MadeI
   return {};
 }
 
+void add_bytes(CacheKey& key, const Scene& scene, std::uint32_t image) {
+  if (image == kNone) return key.add_text({});
+  const std::vector<std::uint8_t>& bytes = scene.images[image].bytes;
+  key.add_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+void add_image(CacheKey& key, const Scene& scene, std::uint32_t image) {
+  const std::optional<SpecularGlossiness>& from = scene.images[image].converted_from;
+  key.add(from.has_value());
+  if (!from) return add_bytes(key, scene, image);
+  const auto& [diffuse_factor, specular_factor, glossiness_factor, diffuse, specular_glossiness] = *from;
+  for (const glm::vec3& factor : {diffuse_factor, specular_factor}) {
+    for (int c = 0; c < 3; ++c) key.add(factor[c]);
+  }
+  key.add(glossiness_factor);
+  for (const std::uint32_t source : {diffuse, specular_glossiness}) {
+    key.add(source == kNone);
+    add_bytes(key, scene, source);
+  }
+}
+
 }  // namespace
 
-std::string image_entry(const EncodedImage& image, const std::vector<ImageRequest>& requests,
+std::string image_entry(const Scene& scene, std::uint32_t image, const std::vector<ImageRequest>& requests,
                         const ImageSettings& settings) {
-  const auto& [textures, max_size] = settings;
+  const auto& [textures, max_size, strict] = settings;  // strict: the entry says what is damaged
   CacheKey key("image");
   key.add_text(decoder_code());
-  key.add_text({reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size()});
+  add_image(key, scene, image);
   key.add(textures);
   key.add(max_size);
   for (const auto& [number, use, alpha_cutoff] : requests) {
@@ -78,7 +100,7 @@ void store_images(Cache& cache, const std::string& name, const MadeImages& made)
     contents.image_data.resize((contents.image_data.size() + 15) / 16 * 16);
     images.push_back({{"texels", image.texels}, {"squared_error", image.squared_error}, {"values", image.values}});
   }
-  const Json notes = {{"of_request", made.of_request}, {"images", images}};
+  const Json notes = {{"of_request", made.of_request}, {"images", images}, {"damage", made.damage}};
   cache.store(name, pack::view_of(contents), notes.dump());
 }
 

@@ -26,11 +26,12 @@ struct StoredTexels {
 struct MadeImages {
   std::vector<StoredTexels> images;
   std::vector<std::size_t> of_request;  // number among `images`
+  std::string damage;                   // what is wrong with the file although it was decoded; or nothing
   std::string error;
 };
 
-/// The entry of an image's bytes and of what is asked of them, in this order.
-std::string image_entry(const EncodedImage& image, const std::vector<ImageRequest>& requests,
+/// The entry of an image of the scene, and of what is asked of it, in this order.
+std::string image_entry(const Scene& scene, std::uint32_t image, const std::vector<ImageRequest>& requests,
                         const ImageSettings& settings);
 
 /// False where the cache has no such entry, or none for so many requests.

@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
 
 #include "../error.h"
 #include "block_compress.h"
 #include "decode.h"
+#include "decode_scene.h"
 #include "image_cache.h"
 #include "pack_checks.h"
 
@@ -81,13 +83,40 @@ struct Job {
   std::vector<std::size_t> requests;  // their numbers
 };
 
+/// For each image the first that is the same, which may be itself.
+class SameImages {
+ public:
+  explicit SameImages(const Scene& scene) : scene_(scene) {}
+
+  std::uint32_t first(std::uint32_t image) {
+    if (image == kNone) return kNone;
+    const EncodedImage& encoded = scene_.images[image];
+    if (!encoded.converted_from) {
+      const std::string_view content(reinterpret_cast<const char*>(encoded.bytes.data()), encoded.bytes.size());
+      return first_of_bytes_.try_emplace(content, image).first->second;
+    }
+    SpecularGlossiness from = *encoded.converted_from;
+    from.diffuse = first(from.diffuse);
+    from.specular_glossiness = first(from.specular_glossiness);
+    for (const auto& [known, number] : converted_) {
+      if (known == from) return number;
+    }
+    converted_.emplace_back(from, image);
+    return image;
+  }
+
+ private:
+  const Scene& scene_;
+  std::unordered_map<std::string_view, std::uint32_t> first_of_bytes_;
+  std::vector<std::pair<SpecularGlossiness, std::uint32_t>> converted_;
+};
+
 std::vector<Job> jobs_of(const std::vector<ImageRequest>& requests, const Scene& scene) {
   std::vector<Job> jobs;
-  std::unordered_map<std::string_view, std::size_t> job_of;
+  SameImages same(scene);
+  std::unordered_map<std::uint32_t, std::size_t> job_of;
   for (std::size_t i = 0; i < requests.size(); ++i) {
-    const std::vector<std::uint8_t>& bytes = scene.images[requests[i].image].bytes;
-    const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const auto [it, added] = job_of.try_emplace(content, jobs.size());
+    const auto [it, added] = job_of.try_emplace(same.first(requests[i].image), jobs.size());
     if (added) jobs.push_back({requests[i].image, {}});
     jobs[it->second].requests.push_back(i);
   }
@@ -105,8 +134,9 @@ MadeImages make_images_of(const Job& job, const Scene& scene, const std::vector<
                           const ImageSettings& settings) {
   MadeImages made;
   try {
-    const Texels texels = decode_image(scene.images[job.image]);
-    const bool opaque = is_opaque(texels);
+    const SceneTexels decoded = decode_image(scene, job.image);
+    made.damage = decoded.damage;
+    const bool opaque = is_opaque(decoded.color);
     std::vector<Wish> wishes;
     for (const std::size_t number : job.requests) {
       const ImageRequest& request = requests[number];
@@ -116,8 +146,9 @@ MadeImages make_images_of(const Job& job, const Scene& scene, const std::vector<
       made.of_request.push_back(static_cast<std::size_t>(known - wishes.begin()));
       if (known != wishes.end()) continue;
       wishes.push_back(wish);
-      made.images.push_back(stored(mip_chain(Texels(texels), wish.use, wish.alpha_cutoff, settings.max_size), wish.use,
-                                   settings.textures));
+      made.images.push_back(
+          stored(mip_chain(Texels(decoded.as(wish.use)), wish.use, wish.alpha_cutoff, settings.max_size), wish.use,
+                 settings.textures));
     }
   } catch (const Error& error) {
     made.error = error.what();  // kept, so that the first in order is told, not the first in time
@@ -131,7 +162,7 @@ MadeImages find_or_make_images(const Job& job, const Scene& scene, const std::ve
   if (!cache.is_on()) return make_images_of(job, scene, requests, settings);
   std::vector<ImageRequest> asked;
   for (const std::size_t number : job.requests) asked.push_back(requests[number]);
-  const std::string entry = image_entry(scene.images[job.image], asked, settings);
+  const std::string entry = image_entry(scene, job.image, asked, settings);
   MadeImages made;
   if (load_images(cache, entry, asked.size(), made)) return made;
   made = make_images_of(job, scene, requests, settings);
@@ -139,21 +170,33 @@ MadeImages find_or_make_images(const Job& job, const Scene& scene, const std::ve
   return made;
 }
 
+/// How many jobs still need the bytes of each image.
+std::vector<std::uint32_t> count_users(const std::vector<Job>& jobs, const Scene& scene) {
+  std::vector<std::uint32_t> users(scene.images.size(), 0);
+  for (const Job& job : jobs) for_each_source(scene, job.image, [&](std::uint32_t source) { ++users[source]; });
+  return users;
+}
+
 /// Side by side, as many as memory allows. Takes the bytes out of the scene.
 std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<ImageRequest>& requests, Scene& scene,
-                            const ImageSettings& settings, const Progress& progress, Cache& cache) {
+                            const ImageSettings& settings, const Progress& progress, Cache& cache, Warnings& warnings) {
   std::vector<MadeImages> made(jobs.size());
+  std::vector<std::uint32_t> users = count_users(jobs, scene);
   for (std::size_t first = 0; first < jobs.size();) {
     progress.next("making images, " + std::to_string(first) + " of " + std::to_string(jobs.size()) + " done");
     std::size_t end = first;
     for (std::uint64_t texels = 0; end < jobs.size() && (end == first || texels < kTexelsAtOnce); ++end) {
-      texels += claimed_texels(scene.images[jobs[end].image]);
+      for_each_source(scene, jobs[end].image,
+                      [&](std::uint32_t source) { texels += claimed_texels(scene.images[source]); });
     }
     tbb::parallel_for(first, end,
                       [&](std::size_t i) { made[i] = find_or_make_images(jobs[i], scene, requests, settings, cache); });
     for (; first < end; ++first) {
       if (!made[first].error.empty()) throw Error(made[first].error);
-      scene.images[jobs[first].image].bytes = {};
+      tell_damage(scene.images[jobs[first].image], made[first].damage, settings.strict, warnings);
+      for_each_source(scene, jobs[first].image, [&](std::uint32_t source) {
+        if (--users[source] == 0) scene.images[source].bytes = {};
+      });
     }
   }
   return made;
@@ -171,9 +214,10 @@ std::uint32_t add_image(StoredTexels&& image, const std::string& name, Strings& 
 }
 
 void tell(const std::vector<MadeImages>& made, std::size_t requests, PassReport& report) {
-  std::uint64_t images = 0, texels = 0, squared_error = 0, values = 0;
+  std::uint64_t images = 0, texels = 0, squared_error = 0, values = 0, damaged = 0;
   for (const MadeImages& each : made) {
     images += each.images.size();
+    damaged += !each.damage.empty();
     for (const StoredTexels& image : each.images) {
       texels += image.texels;
       squared_error += image.squared_error;
@@ -183,6 +227,7 @@ void tell(const std::vector<MadeImages>& made, std::size_t requests, PassReport&
   report.count("images", static_cast<double>(images));
   report.count("decoded", static_cast<double>(made.size()));
   report.count("shared", static_cast<double>(requests - made.size()));  // uses that needed no decoding of their own
+  report.count("damaged", static_cast<double>(damaged));
   report.count("texels", static_cast<double>(texels));
   if (squared_error == 0) return;
   report.count("psnr_db",
@@ -192,9 +237,10 @@ void tell(const std::vector<MadeImages>& made, std::size_t requests, PassReport&
 }  // namespace
 
 void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const ImageSettings& settings,
-                 const Progress& progress, Cache& cache, PassReport& report, Strings& strings, pack::Contents& pack) {
+                 const Progress& progress, Cache& cache, PassReport& report, Warnings& warnings, Strings& strings,
+                 pack::Contents& pack) {
   const std::vector<Job> jobs = jobs_of(requests, scene);
-  std::vector<MadeImages> made = run(jobs, requests, scene, settings, progress, cache);
+  std::vector<MadeImages> made = run(jobs, requests, scene, settings, progress, cache, warnings);
   tell(made, requests.size(), report);
   std::size_t bytes = 0;
   for (const MadeImages& each : made) {

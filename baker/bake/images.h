@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: PNG and JPEG bytes into what GPUs sample, with all mip levels.
+// Pass: PNG, JPEG and WebP bytes into what GPUs sample, with all mip levels.
 #pragma once
 
 #include <compare>
 
 #include "../cache.h"
+#include "../error.h"
 #include "../progress.h"
 #include "../report.h"
 #include "../scene.h"
@@ -23,6 +24,7 @@ enum class TextureMode {
 struct ImageSettings {
   TextureMode textures = TextureMode::bc;
   std::uint32_t max_size = 0;  // largest width or height, texels; 0: no limit
+  bool strict = false;         // a damaged image is an error, and not a warning
 };
 
 struct ImageRequest {
@@ -36,6 +38,7 @@ struct ImageRequest {
 /// Fills images and image_data, and turns the textures' numbers of requests into numbers of images: requests that need
 /// the same texels share an image. Takes the bytes out of the scene. Throws Error.
 void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const ImageSettings& settings,
-                 const Progress& progress, Cache& cache, PassReport& report, Strings& strings, pack::Contents& pack);
+                 const Progress& progress, Cache& cache, PassReport& report, Warnings& warnings, Strings& strings,
+                 pack::Contents& pack);
 
 }  // namespace chandelier::baker

@@ -2,8 +2,6 @@
 // JPEG (ITU-T T.81, Annex B) as a row of marker segments: a decoder fills what is missing with grey and says nothing.
 #include "jpeg.h"
 
-#include "../error.h"
-
 namespace chandelier::baker {
 namespace {
 
@@ -46,9 +44,8 @@ std::size_t find_marker(const std::vector<std::uint8_t>& bytes, Wanted wanted) {
 
 }  // namespace
 
-void check_jpeg(const std::vector<std::uint8_t>& bytes, const std::string& where) {
-  if (find_marker(bytes, [](std::uint8_t marker) { return marker == kEndOfImage; }) < bytes.size()) return;
-  fail(where, "JPEG is cut short (" + std::to_string(bytes.size()) + " bytes)");
+bool is_whole_jpeg(const std::vector<std::uint8_t>& bytes) {
+  return find_marker(bytes, [](std::uint8_t marker) { return marker == kEndOfImage; }) < bytes.size();
 }
 
 std::uint64_t jpeg_texels(const std::vector<std::uint8_t>& bytes) {

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace chandelier::baker {
 
-/// Throws Error, beginning with `where`, where the file ends before its image does.
-void check_jpeg(const std::vector<std::uint8_t>& bytes, const std::string& where);
+/// Whether the file ends where its image does, and not before.
+bool is_whole_jpeg(const std::vector<std::uint8_t>& bytes);
 
 /// Width times height as its frame header claims, unchecked; 0 where there is none.
 std::uint64_t jpeg_texels(const std::vector<std::uint8_t>& bytes);

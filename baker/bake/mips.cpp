@@ -200,6 +200,14 @@ void keep_coverage(const std::vector<Level>& levels, float cutoff, double covera
 
 }  // namespace
 
+float linear_of_srgb(std::uint8_t code) {
+  return srgb().linear[code];
+}
+
+std::uint8_t srgb_of_linear(float value) {
+  return srgb().code(value);
+}
+
 std::uint32_t mip_level_count(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
 }

@@ -21,6 +21,10 @@ struct Texels {
   std::vector<std::uint8_t> rgba;  // rows from the top
 };
 
+/// sRGB's curve: of an 8-bit value, and the nearest 8-bit value of a linear one (0 to 1, clamped).
+float linear_of_srgb(std::uint8_t code);
+std::uint8_t srgb_of_linear(float value);
+
 std::uint32_t mip_level_count(std::uint32_t width, std::uint32_t height);
 
 /// All levels down to 1×1, largest first, level n max(1, size >> n) wide and high; those above `max_size` are left out

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // PNG (ISO/IEC 15948) as a row of chunks: length, type, data, CRC-32. All that the decoder would complain about on
-// stderr is found here first.
+// stderr is found and mended here first.
 #include "png.h"
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <new>
 
 #include "../error.h"
@@ -28,32 +29,58 @@ struct Chunk {
   std::size_t size;
 };
 
+/// Only the first is told.
+void note(std::string& damage, const std::string& what) {
+  if (damage.empty()) damage = what;
+}
+
 struct Header {
   std::uint32_t width, height;
   std::uint8_t depth, color, interlaced;
 };
 
-std::vector<Chunk> split_chunks(const Bytes& bytes, const std::string& where) {
-  if (bytes.size() < kSignatureBytes) fail(where, "PNG is cut short (" + std::to_string(bytes.size()) + " bytes)");
+/// 5.4: others may be left out.
+bool is_critical(const std::string& type) {
+  return type[0] >= 'A' && type[0] <= 'Z';
+}
+
+/// As libpng has it, an ancillary chunk with a wrong checksum does not count; a critical one does, but for the header.
+/// What is there of image data counts where the file is cut.
+std::vector<Chunk> split_chunks(const Bytes& bytes, const std::string& where, std::string& damage) {
   std::vector<Chunk> out;
+  const auto cut_short = [&] {
+    const std::string what = "PNG is cut short (" + std::to_string(bytes.size()) + " bytes)";
+    if (std::none_of(out.begin(), out.end(), [](const Chunk& chunk) { return chunk.type == "IDAT"; }))
+      fail(where, what);
+    note(damage, what);
+    return out;
+  };
+  if (bytes.size() < kSignatureBytes) return cut_short();
   for (std::size_t at = kSignatureBytes;;) {
-    // 12: length, type and checksum
-    if (bytes.size() - at < 12 || bytes.size() - at - 12 < u32_at(&bytes[at])) {
-      fail(where, "PNG is cut short (" + std::to_string(bytes.size()) + " bytes)");
-    }
-    const std::size_t size = u32_at(&bytes[at]);
+    if (bytes.size() - at < 8) return cut_short();
+    const std::size_t size = u32_at(&bytes[at]), left = bytes.size() - at - 8;
     const std::string type(&bytes[at + 4], &bytes[at + 4] + 4);
-    if (crc32_z(0, &bytes[at + 4], size + 4) != u32_at(&bytes[at + 8 + size])) {
-      fail(where, "PNG is damaged: the checksum of chunk " + type + " at byte " + std::to_string(at) + " is wrong");
+    if (left < 4 || left - 4 < size) {
+      if (type == "IDAT") out.push_back({type, &bytes[at] + 8, std::min(left, size)});
+      return cut_short();
     }
-    out.push_back({type, &bytes[at + 8], size});
+    const bool right = crc32_z(0, &bytes[at + 4], size + 4) == u32_at(&bytes[at + 8 + size]);
+    const std::string fault =
+        "PNG is damaged: the checksum of chunk " + type + " at byte " + std::to_string(at) + " is wrong";
+    if (!right && out.empty()) fail(where, fault);
+    if (!right) note(damage, fault);
+    if (right || is_critical(type)) out.push_back({type, &bytes[at + 8], size});
     if (type == "IEND") return out;
     at += size + 12;
   }
 }
 
+std::string fault(const std::string& what, std::uint64_t value) {
+  return "PNG is damaged: " + what + " (" + std::to_string(value) + ")";
+}
+
 [[noreturn]] void damaged(const std::string& where, const std::string& what, std::uint64_t value) {
-  fail(where, "PNG is damaged: " + what + " (" + std::to_string(value) + ")");
+  fail(where, fault(what, value));
 }
 
 /// Table 11.1: the bit depths of a colour type.
@@ -98,62 +125,94 @@ std::vector<std::size_t> row_sizes(const Header& header) {
 /// Inflates the chunks of image data, a row at a time.
 class Inflater {
  public:
-  Inflater(const std::vector<Chunk>& chunks, const std::string& where) : chunks_(chunks), where_(where) {
+  explicit Inflater(const std::vector<Chunk>& chunks) : chunks_(chunks) {
     if (inflateInit(&stream_) != Z_OK) throw std::bad_alloc();
   }
   ~Inflater() { inflateEnd(&stream_); }
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  void read(Bytes& row, std::size_t number) {
-    inflate_to(row);
-    if (stream_.avail_out > 0) damaged(where_, "its data ends in row", number);
+  /// What is wrong, or nothing.
+  std::string read(Bytes& row, std::size_t number) {
+    if (!inflate_to(row)) return fault("its data cannot be inflated after byte", stream_.total_in);
+    return stream_.avail_out > 0 ? fault("its data ends in row", number) : "";
   }
 
   /// What follows the last row is of no use, but a wrong checksum says that the rows are not what they were.
-  void finish() {
+  std::string finish() {
     Bytes more(1);
-    inflate_to(more);
-    if (stream_.avail_out > 0 && !ended_) damaged(where_, "its data ends without a checksum, bytes", stream_.total_in);
+    if (!inflate_to(more)) return fault("its data cannot be inflated after byte", stream_.total_in);
+    return stream_.avail_out > 0 && !ended_ ? fault("its data ends without a checksum, bytes", stream_.total_in) : "";
   }
 
  private:
-  /// As much as there is.
-  void inflate_to(Bytes& out) {
+  /// As much as there is; false where it is not what a deflater writes.
+  bool inflate_to(Bytes& out) {
     stream_.next_out = out.data();
     stream_.avail_out = static_cast<uInt>(out.size());
     while (stream_.avail_out > 0 && !ended_) {
       if (stream_.avail_in == 0) {
-        if (next_ == chunks_.size()) return;
+        if (next_ == chunks_.size()) return true;
         stream_.next_in = const_cast<std::uint8_t*>(chunks_[next_].data);
         stream_.avail_in = static_cast<uInt>(chunks_[next_++].size);
         continue;
       }
       const int result = inflate(&stream_, Z_NO_FLUSH);
-      if (result != Z_OK && result != Z_STREAM_END) {
-        damaged(where_, "its data cannot be inflated after byte", stream_.total_in);
-      }
+      if (result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR) return false;
       ended_ = result == Z_STREAM_END;
     }
+    return true;
   }
 
   const std::vector<Chunk>& chunks_;
-  const std::string& where_;
   z_stream stream_ = {};
   std::size_t next_ = 0;
   bool ended_ = false;
 };
 
-void check_rows(const Header& header, const std::vector<Chunk>& data, const std::string& where) {
-  Inflater inflater(data, where);
+struct Rows {
+  std::size_t good = 0;  // from the first on
+  std::string fault;     // what is wrong with the next, or with what ends the data; or nothing
+};
+
+Rows check_rows(const std::vector<std::size_t>& sizes, const std::vector<Chunk>& data) {
+  Inflater inflater(data);
+  Rows out;
   Bytes row;
-  const std::vector<std::size_t> sizes = row_sizes(header);
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    row.resize(sizes[i]);
-    inflater.read(row, i);
-    if (row[0] > 4) damaged(where, "row " + std::to_string(i) + " has an unknown filter", row[0]);
+  for (; out.good < sizes.size(); ++out.good) {
+    row.resize(sizes[out.good]);
+    out.fault = inflater.read(row, out.good);
+    if (out.fault.empty() && row[0] > 4) {
+      out.fault = fault("row " + std::to_string(out.good) + " has an unknown filter", row[0]);
+    }
+    if (!out.fault.empty()) return out;
   }
-  inflater.finish();
+  out.fault = inflater.finish();
+  return out;
+}
+
+/// The good rows again, and each other as the one above it.
+Bytes mended_rows(const std::vector<std::size_t>& sizes, std::size_t good, const std::vector<Chunk>& data) {
+  constexpr std::uint8_t kUp = 2;  // filter: what is added to the row above
+  Inflater inflater(data);
+  Bytes out, row, packed(std::size_t{1} << 16);
+  z_stream stream = {};
+  if (deflateInit(&stream, Z_BEST_SPEED) != Z_OK) throw std::bad_alloc();
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    row.assign(sizes[i], 0);
+    row[0] = kUp;
+    if (i < good) inflater.read(row, i);
+    stream.next_in = row.data();
+    stream.avail_in = static_cast<uInt>(row.size());
+    do {
+      stream.next_out = packed.data();
+      stream.avail_out = static_cast<uInt>(packed.size());
+      deflate(&stream, i + 1 == sizes.size() ? Z_FINISH : Z_NO_FLUSH);
+      out.insert(out.end(), packed.begin(), packed.end() - static_cast<std::ptrdiff_t>(stream.avail_out));
+    } while (stream.avail_out == 0);
+  }
+  deflateEnd(&stream);
+  return out;
 }
 
 /// Whether the texels need a chunk that is not image data.
@@ -162,24 +221,54 @@ bool is_needed(const Chunk& chunk, const Header& header) {
   return chunk.type == "tRNS" && header.color != kGreyAlpha && header.color != kRgba;
 }
 
-void check_needed(const Chunk& chunk, const Header& header, std::size_t palette_colors, const std::string& where) {
+bool fits(const Chunk& chunk, const Header& header, std::size_t palette_colors) {
   const bool palette = chunk.type == "PLTE";
   const std::size_t most = std::size_t{1} << header.depth;
-  const bool fits = palette ? palette_colors == 0 && chunk.size > 0 && chunk.size % 3 == 0 && chunk.size / 3 <= most
-                    : header.color == kPalette ? chunk.size > 0 && chunk.size <= palette_colors
-                                               : chunk.size == (header.color == kGrey ? 2u : 6u);
-  if (!fits) damaged(where, "chunk " + chunk.type + " has a wrong size or place", chunk.size);
+  if (palette) return palette_colors == 0 && chunk.size > 0 && chunk.size % 3 == 0 && chunk.size / 3 <= most;
+  if (header.color == kPalette) return chunk.size > 0 && chunk.size <= palette_colors;
+  return chunk.size == (header.color == kGrey ? 2u : 6u);
+}
+
+/// With a checksum that is right.
+void append(const std::string& type, const std::uint8_t* data, std::size_t size, Bytes& out) {
+  const auto append_u32 = [&](std::uint32_t value) {
+    for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
+  };
+  append_u32(static_cast<std::uint32_t>(size));
+  const std::size_t begin = out.size();
+  out.insert(out.end(), type.begin(), type.end());
+  out.insert(out.end(), data, data + size);
+  append_u32(static_cast<std::uint32_t>(crc32_z(0, &out[begin], size + 4)));
 }
 
 void append(const Chunk& chunk, Bytes& out) {
-  const std::uint8_t* begin = chunk.data - 8;
-  out.insert(out.end(), begin, begin + chunk.size + 12);
+  append(chunk.type, chunk.data, chunk.size, out);
+}
+
+/// The image data as it is, or made whole.
+void append_data(const Header& header, const std::vector<Chunk>& data, const std::string& where, std::string& damage,
+                 Bytes& out) {
+  const std::vector<std::size_t> sizes = row_sizes(header);
+  const Rows rows = check_rows(sizes, data);
+  const bool all = rows.good == sizes.size();
+  if (!all && (rows.good == 0 || header.interlaced)) fail(where, rows.fault);  // later passes lie between the rows
+  if (rows.fault.empty()) {
+    for (const Chunk& chunk : data) append(chunk, out);
+    return;
+  }
+  note(damage, rows.fault);
+  const Bytes mended = mended_rows(sizes, rows.good, data);
+  constexpr std::size_t kMostInChunk = std::size_t{1} << 30;
+  for (std::size_t at = 0; at < mended.size(); at += kMostInChunk) {
+    append("IDAT", &mended[at], std::min(kMostInChunk, mended.size() - at), out);
+  }
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where) {
-  const std::vector<Chunk> chunks = split_chunks(bytes, where);
+std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where,
+                                        std::string& damage) {
+  const std::vector<Chunk> chunks = split_chunks(bytes, where, damage);
   const Header header = read_header(chunks[0], where);
   Bytes out(bytes.begin(), bytes.begin() + kSignatureBytes);
   append(chunks[0], out);
@@ -189,16 +278,20 @@ std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, 
   for (const Chunk& chunk : chunks) {
     if (chunk.type == "IDAT") data.push_back(chunk);
     if (!data.empty() || !is_needed(chunk, header) || (chunk.type == "tRNS" && transparent)) continue;
-    check_needed(chunk, header, palette_colors, where);
+    if (!fits(chunk, header, palette_colors)) {
+      const std::string what = "chunk " + chunk.type + " has a wrong size or place";
+      if (is_critical(chunk.type)) damaged(where, what, chunk.size);
+      note(damage, fault(what, chunk.size));
+      continue;
+    }
     if (chunk.type == "PLTE") palette_colors = chunk.size / 3;
     transparent = transparent || chunk.type == "tRNS";
     append(chunk, out);
   }
   if (header.color == kPalette && palette_colors == 0)
     damaged(where, "no palette before its data, colour type", kPalette);
-  check_rows(header, data, where);
-  for (const Chunk& chunk : data) append(chunk, out);
-  append(chunks.back(), out);
+  append_data(header, data, where, damage, out);
+  append("IEND", nullptr, 0, out);
   return out;
 }
 

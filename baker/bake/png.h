@@ -9,8 +9,11 @@
 namespace chandelier::baker {
 
 /// The chunks of a PNG that its texels need: glTF ignores colour profiles and gamma, and the decoder would print
-/// warnings about them. Throws Error, beginning with `where`, where the file is cut or a checksum is wrong.
-std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where);
+/// warnings about them. What viewers show although it is damaged is made whole, and `damage` then says what was wrong:
+/// chunks whose checksum is wrong, a file that is cut short, data that ends early or cannot be inflated from some row
+/// on (which and those below repeat the last good one). Throws Error, beginning with `where`, where that is no picture.
+std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where,
+                                        std::string& damage);
 
 /// Width times height as its header claims, unchecked; 0 where there is no header.
 std::uint64_t png_texels(const std::vector<std::uint8_t>& bytes);

@@ -98,6 +98,12 @@ std::optional<AnimationPath> path_of(const std::string& name) {
   return std::nullopt;
 }
 
+/// What KHR_animation_pointer says that a channel changes.
+std::string pointer_of(const Json& target) {
+  static const Json::json_pointer kPath("/extensions/KHR_animation_pointer/pointer");
+  return target.value(kPath, "pointer");
+}
+
 Animation read_animation(const Gltf& gltf, const Json& json, const std::string& here,
                          const std::vector<std::uint8_t>& in_scene, std::uint64_t& values, Warnings& warnings) {
   Animation out;
@@ -106,6 +112,11 @@ Animation read_animation(const Gltf& gltf, const Json& json, const std::string& 
     const Json& target = channel["target"];
     const std::string name = target["path"].get<std::string>();
     const auto path = path_of(name);
+    if (name == "pointer") {
+      warnings.add(gltf.file, here, "animation by KHR_animation_pointer is skipped: what it changes stays as it is",
+                   pointer_of(target));
+      continue;
+    }
     if (!path) warnings.add(gltf.file, here, "animation of something else than a node's place is skipped", name);
     if (!target.contains("node")) warnings.add(gltf.file, here, "a channel without a node is skipped");
     if (!path || !target.contains("node")) continue;

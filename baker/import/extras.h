@@ -23,7 +23,6 @@ struct Extras {
   /// JSON Schema's integer: 128.0 is one.
   std::optional<std::uint32_t> integer(const char* key, double least, double most) const;
 
- private:
   [[noreturn]] void bad(const char* key, const char* what, const Json& value) const;
 };
 

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <string_view>
@@ -125,10 +126,15 @@ UriTarget resolve_uri(const std::filesystem::path& folder, const std::string& ur
   if (decoded[0] == '/' || decoded[0] == '\\') {
     fail(where, "URI is not relative to the file (" + shown_uri(uri) + ")");
   }
-  std::error_code error;
-  const bool literal =
-      !std::filesystem::exists(folder / decoded, error) && std::filesystem::exists(folder / uri, error);
-  return {folder / (literal ? uri : decoded), {}};
+  std::string slashes = decoded;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  const auto exists = [&](const std::string& name) {
+    std::error_code error;
+    return std::filesystem::exists(folder / name, error);
+  };
+  if (!exists(decoded) && exists(uri)) return {folder / uri, {}};
+  if (slashes != decoded && !exists(decoded) && exists(slashes)) return {folder / slashes, {}, true};
+  return {folder / decoded, {}};
 }
 
 }  // namespace chandelier::baker

@@ -27,9 +27,11 @@ Bytes map_file(const std::filesystem::path& path, const std::string& where);
 struct UriTarget {
   std::filesystem::path file;  // empty for a data URI
   std::vector<std::uint8_t> data;
+  bool backslashes = false;  // the file was found with / in their place
 };
 
-/// Throws Error where the URI is no relative reference, or its data is not base64.
+/// A file is looked for under the name that the URI stands for, under its own text, and with / for each backslash, as
+/// programs on Windows write them. Throws Error where the URI is no relative reference, or its data is not base64.
 UriTarget resolve_uri(const std::filesystem::path& folder, const std::string& uri, const std::string& where);
 
 }  // namespace chandelier::baker

@@ -52,8 +52,9 @@ std::string place(const Json& json, const char* section, std::size_t index);
 /// One of glTF's SCALAR to MAT4.
 bool is_accessor_type(const std::string& type);
 
-/// The bytes of a data URI or of a file beside the glTF, which is noted in files_read. Throws Error.
-Bytes read_uri(Gltf& gltf, const std::string& uri, const std::string& where);
+/// The bytes of a data URI or of a file beside the glTF, which is noted in files_read. `here`: the place in the file
+/// that has the URI. Throws Error.
+Bytes read_uri(Gltf& gltf, const std::string& uri, const std::string& here, Warnings& warnings);
 
 /// Says which buffers could not be had. Whatever needed them has failed before.
 void warn_of_buffers(const Gltf& gltf, Warnings& warnings);

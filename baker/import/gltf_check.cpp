@@ -98,6 +98,7 @@ void check_node(const Json& root, const Object& node) {
   node.numbers("rotation", 4, -kBig, kBig);
   node.numbers("scale", 3, -kBig, kBig);
   check_instancing(root, node);
+  if (const auto visibility = node.extension("KHR_node_visibility")) visibility->boolean("visible");
   const auto light = node.extension("KHR_lights_punctual");
   if (!light) return;
   const auto extensions = root.find("extensions");
@@ -140,6 +141,13 @@ void check_material(const Json& root, const Object& material) {
     transmission->number("transmissionFactor", 0, 1);
     check_texture_use(root, *transmission, "transmissionTexture", nullptr);
   }
+  if (const auto glossy = material.extension("KHR_materials_pbrSpecularGlossiness")) {
+    glossy->numbers("diffuseFactor", 4, 0, 1);
+    glossy->numbers("specularFactor", 3, 0, 1);
+    glossy->number("glossinessFactor", 0, 1);
+    check_texture_use(root, *glossy, "diffuseTexture", nullptr);
+    check_texture_use(root, *glossy, "specularGlossinessTexture", nullptr);
+  }
 }
 
 void check_texture(const Json& root, const Object& texture) {
@@ -179,7 +187,9 @@ void check_light(const Json&, const Object& light) {
   light.text("name");
   light.numbers("color", 3, 0, 1e6);   // glTF says up to 1; a pack holds this much
   light.number("intensity", 0, 1e12);  // a pack's limit
-  light.number("range", 1e-12, kBig);
+  light.number("range", 0, kBig);
+  const double range = light.json.value("range", 0.0);  // 0, which glTF does not allow, is taken as none
+  if (range > 0 && range < 1e-12) light.bad("range", "is out of range", light.json["range"]);
   const Json& type = light.json["type"];
   if (type != "point" && type != "spot" && type != "directional") light.bad("type", "is not a light type", type);
   if (type != "spot") return;

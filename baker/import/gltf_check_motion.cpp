@@ -13,6 +13,7 @@ void check_channel(const Json& root, const Object& animation, const Object& chan
   const auto target = channel.object("target", Need::required);
   target->index("node", section_size(root, "nodes"));
   target->text("path", Need::required);
+  if (const auto pointer = target->extension("KHR_animation_pointer")) pointer->text("pointer");
   const auto& path = target->json["path"].get_ref<const std::string&>();
   if (!target->json.contains("node")) return;
   const auto node = target->json["node"].get<std::uint64_t>();

@@ -134,6 +134,15 @@ void lint_animations(const Lint& lint) {
   });
 }
 
+void lint_materials(const Lint& lint) {
+  for_each(lint, "materials", [&](const Json& material, std::size_t i) {
+    if (!material.contains("emissiveFactor")) return;
+    for (const Json& each : material["emissiveFactor"]) {
+      if (each.get<double>() > 1) lint.say("materials", i, "its emissiveFactor is above 1: it is taken as it is");
+    }
+  });
+}
+
 /// The node above each node, and the one above all of these.
 struct Family {
   std::vector<std::size_t> parent, root;
@@ -236,6 +245,8 @@ void lint_gltf(const Json& json, const std::string& file, Warnings& warnings) {
   lint_nodes(lint);
   lint_animations(lint);
   lint_skins(lint);
+  lint_materials(lint);
+  lint_keys(lint);
   std::set<std::string> declared;
   const auto used = json.find("extensionsUsed");
   if (used != json.end()) declared.insert(used->begin(), used->end());

@@ -31,4 +31,7 @@ std::uint64_t whole(const Json& object, const char* key, std::uint64_t otherwise
 
 void lint_meshes(const Lint& lint);
 
+/// Keys that glTF does not define, which nothing reads: typing errors, most likely.
+void lint_keys(const Lint& lint);
+
 }  // namespace chandelier::baker

@@ -162,14 +162,14 @@ bool is_fallback(const Json& buffer) {
 }
 
 /// A buffer's bytes, or what is wrong with it: an error only where something reads it.
-void load_buffer(Gltf& gltf, std::size_t number, std::span<const std::uint8_t> bin) {
+void load_buffer(Gltf& gltf, std::size_t number, std::span<const std::uint8_t> bin, Warnings& warnings) {
   const Json& json = gltf.json["buffers"][number];
-  const std::string where = gltf.file + ": " + place(gltf.json, "buffers", number);
+  const std::string here = place(gltf.json, "buffers", number), where = gltf.file + ": " + here;
   const auto length = json["byteLength"].get<std::uint64_t>();
   Buffer& buffer = gltf.buffers[number];
   if (is_fallback(json)) return;
   if (json.contains("uri")) {
-    buffer.data = read_uri(gltf, json["uri"].get<std::string>(), where);
+    buffer.data = read_uri(gltf, json["uri"].get<std::string>(), here, warnings);
   } else if (number == 0 && !bin.empty()) {
     buffer.data = {bin, gltf.container.owner};
   } else {
@@ -183,11 +183,11 @@ void load_buffer(Gltf& gltf, std::size_t number, std::span<const std::uint8_t> b
   buffer.present = true;
 }
 
-void load_buffers(Gltf& gltf, std::span<const std::uint8_t> bin) {
+void load_buffers(Gltf& gltf, std::span<const std::uint8_t> bin, Warnings& warnings) {
   gltf.buffers.resize(section_size(gltf.json, "buffers"));
   for (std::size_t i = 0; i < gltf.buffers.size(); ++i) {
     try {
-      load_buffer(gltf, i, bin);
+      load_buffer(gltf, i, bin, warnings);
     } catch (const Error& error) {
       gltf.buffers[i] = {{}, false, error.what()};
     }
@@ -207,8 +207,10 @@ void warn_of_buffers(const Gltf& gltf, Warnings& warnings) {
   }
 }
 
-Bytes read_uri(Gltf& gltf, const std::string& uri, const std::string& where) {
+Bytes read_uri(Gltf& gltf, const std::string& uri, const std::string& here, Warnings& warnings) {
+  const std::string where = gltf.file + ": " + here;
   UriTarget target = resolve_uri(gltf.path.parent_path(), uri, where);
+  if (target.backslashes) warnings.add(gltf.file, here, "breaks glTF: a backslash in its URI is taken as /");
   if (target.file.empty()) return bytes_of(std::move(target.data));
   gltf.files_read.push_back(target.file);
   return map_file(target.file, where);
@@ -243,11 +245,20 @@ std::span<const std::uint8_t> buffer_bytes(const Gltf& gltf, std::size_t number,
 }
 
 void check_extensions(const Json& json, const std::string& file, Warnings& warnings) {
-  static const std::set<std::string> kKnown = {
-      "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
-      "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-      "KHR_materials_transmission", "KHR_materials_unlit",     "KHR_mesh_quantization",
-      "KHR_meshopt_compression",    "KHR_texture_basisu",      "KHR_texture_transform"};
+  static const std::set<std::string> kKnown = {"EXT_mesh_gpu_instancing",
+                                               "EXT_meshopt_compression",
+                                               "EXT_texture_webp",
+                                               "KHR_draco_mesh_compression",
+                                               "KHR_lights_punctual",
+                                               "KHR_materials_emissive_strength",
+                                               "KHR_materials_pbrSpecularGlossiness",
+                                               "KHR_materials_transmission",
+                                               "KHR_materials_unlit",
+                                               "KHR_mesh_quantization",
+                                               "KHR_meshopt_compression",
+                                               "KHR_node_visibility",
+                                               "KHR_texture_basisu",
+                                               "KHR_texture_transform"};
   std::set<std::string> required;
   for (const char* key : {"extensionsRequired", "extensionsUsed"}) {
     const auto it = json.find(key);
@@ -281,7 +292,7 @@ Gltf read_gltf(const std::filesystem::path& path, Warnings& warnings) {
   check_gltf(gltf.json, gltf.file);
   lint_gltf(gltf.json, gltf.file, warnings);
   gltf.model = parse_model(gltf.json, gltf.file);
-  load_buffers(gltf, chunks.bin);
+  load_buffers(gltf, chunks.bin, warnings);
   decode_meshopt_views(gltf);
   return gltf;
 }

@@ -15,6 +15,7 @@
 #include "materials.h"
 #include "mesh_use.h"
 #include "nodes.h"
+#include "scenes.h"
 
 namespace chandelier::baker {
 namespace {
@@ -28,6 +29,7 @@ struct Import {
   Motion motion;
   MeshUses meshes;
   std::vector<const MeshShape*> mesh_order;  // as the scene has them
+  ImportCounts counts;
 };
 
 std::uint32_t skin_of(const Import& in, const tinygltf::Node& node) {
@@ -67,11 +69,20 @@ void warn_of_scale(const Import& in, const PlacedNode& placed) {
                   "a mesh whose scale is zero or not within 1e-9 to 1e9 is skipped");
 }
 
+/// Says that what the node carries is left out; a camera never is.
+void count_hidden(Import& in, const PlacedNode& placed) {
+  const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
+  if (node.mesh < 0 && !node.extensions.contains("KHR_lights_punctual")) return;
+  ++in.counts.hidden_nodes;
+  in.warnings.add(in.gltf.file, "nodes", "meshes and lights hidden by KHR_node_visibility are left out",
+                  place(in.gltf.json, "nodes", placed.node));
+}
+
 /// Everything but meshes; notes which meshes are used.
 void visit_node(Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   const std::size_t lights = in.scene.lights.size(), cameras = in.scene.cameras.size();
-  add_light(in.gltf, placed, in.scene, in.warnings);
+  if (placed.visible) add_light(in.gltf, placed, in.scene, in.warnings);
   add_camera(in.gltf, placed, in.scene, in.warnings);
   const std::uint32_t mover = in.motion.mover(placed.node);
   if (in.scene.lights.size() > lights) {
@@ -79,6 +90,7 @@ void visit_node(Import& in, const PlacedNode& placed) {
     in.scene.lights.back().dynamic = in.scene.lights.back().dynamic || mover != kNone;
   }
   if (in.scene.cameras.size() > cameras) in.scene.cameras.back().node = mover;
+  if (!placed.visible) return count_hidden(in, placed);
   if (node.mesh < 0) return;
   if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return warn_of_scale(in, placed);
   const auto [it, added] = in.meshes.try_emplace(shape_of(in.gltf, in.motion, placed.node));
@@ -187,7 +199,7 @@ void place_by_skin(const Import& in, const PlacedNode& placed, const MeshUse& me
 void add_instances(Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   const bool shadowless = is_shadowless(in.gltf, placed.node, in.warnings);
-  if (node.mesh < 0) return;
+  if (node.mesh < 0 || !placed.visible) return;
   if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return;
   const MeshUse& mesh = in.meshes.at(shape_of(in.gltf, in.motion, placed.node));
   const std::string here = place(in.gltf.json, "nodes", placed.node), where = in.gltf.file + ": " + here;
@@ -218,12 +230,14 @@ void add_instances(Import& in, const PlacedNode& placed) {
   }
 }
 
-void import_file(const std::filesystem::path& path, Scene& scene, Warnings& warnings) {
+ImportCounts import_file(const std::filesystem::path& path, Scene& scene, Warnings& warnings,
+                         const ImportSettings& settings) {
   Gltf gltf = read_gltf(path, warnings);
   scene.sources.push_back(path.filename().string());
-  const std::vector<PlacedNode> nodes = place_nodes(gltf);
+  const ChosenScene chosen = choose_scene(gltf, settings.scene, warnings);
+  const std::vector<PlacedNode> nodes = place_nodes(gltf, chosen.number);
   Motion motion = add_motion(gltf, nodes, scene, warnings);
-  Import in{gltf, scene, warnings, std::move(motion), {}, {}};
+  Import in{gltf, scene, warnings, std::move(motion), {}, {}, {}};
   for (const PlacedNode& placed : nodes) visit_node(in, placed);
   check_size(in);
   std::vector<std::vector<ReadPrimitive>> primitives = read_primitives(in);
@@ -235,13 +249,18 @@ void import_file(const std::filesystem::path& path, Scene& scene, Warnings& warn
   materials.warn();
   warn_of_buffers(gltf, warnings);
   scene.files_read.insert(scene.files_read.end(), gltf.files_read.begin(), gltf.files_read.end());
+  in.counts.has_scene = chosen.asked_for;
+  in.counts.scenes_left_out = chosen.left_out;
+  in.counts.converted_materials = materials.converted();
+  return in.counts;
 }
 
 }  // namespace
 
-void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings) {
+ImportCounts import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings,
+                         const ImportSettings& settings) {
   try {
-    import_file(path, scene, warnings);
+    return import_file(path, scene, warnings, settings);
   } catch (const Json::exception& error) {  // of a key that no check asks for
     fail(path.string(), std::string("is not a glTF that can be read: ") + error.what());
   }

@@ -9,7 +9,20 @@
 
 namespace chandelier::baker {
 
-/// Appends what the file's default scene shows to `scene`. Throws Error.
-void import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings);
+struct ImportSettings {
+  std::string scene;  // name or number of the glTF's scene, where it has several; empty: the one that it shows first
+};
+
+/// What an import can say of itself.
+struct ImportCounts {
+  bool has_scene = false;  // the file has the scene that was asked for
+  std::uint64_t hidden_nodes = 0;
+  std::uint64_t scenes_left_out = 0;
+  std::uint64_t converted_materials = 0;  // from specular-glossiness
+};
+
+/// Appends what a scene of the file shows to `scene`. Throws Error.
+ImportCounts import_gltf(const std::filesystem::path& path, Scene& scene, Warnings& warnings,
+                         const ImportSettings& settings = {});
 
 }  // namespace chandelier::baker

@@ -17,6 +17,18 @@ constexpr std::array<std::string_view, 8> kKnownKeys = {"cluster",  "dynamic",  
                                                         "priority", "radius_m", "range_m", "shadow"};
 constexpr double kMostPriority = 255, kMostPower = 1e12, kLeastRange = 1e-12, kMostRange = 3e38, kMostRadius = 1e6;
 
+/// 0 stands for none.
+std::optional<double> range_in(const Extras& extras, const char* key) {
+  const auto value = extras.number(key, 0, kMostRange);
+  if (value && *value > 0 && *value < kLeastRange) extras.bad(key, "is out of range", extras.json[key]);
+  return value;
+}
+
+void warn_of_range(const Gltf& gltf, const Light& light, const std::string& here, Warnings& warnings) {
+  if (light.type == LightType::directional) return;  // which has none
+  warnings.add(gltf.file, here, "a light's range of 0 is taken as none: it ends where --range-threshold says");
+}
+
 /// `owner`: a node or a light.
 void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, Light& out, Warnings& warnings) {
   const std::optional<Extras> found = extras_of(gltf, owner, here, kKnownKeys, warnings);
@@ -29,7 +41,10 @@ void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, L
   if (const auto value = extras.number("radius_m", 0, kMostRadius)) out.radius_m = static_cast<float>(*value);
   if (const auto value = extras.text("group")) out.group = *value;
   if (const auto value = extras.number("power_w", 0, kMostPower)) out.power_w = static_cast<float>(*value);
-  if (const auto value = extras.number("range_m", kLeastRange, kMostRange)) out.range_m = static_cast<float>(*value);
+  if (const auto value = range_in(extras, "range_m")) {
+    out.range_m = *value > 0 ? std::optional(static_cast<float>(*value)) : std::nullopt;
+    if (*value == 0) warn_of_range(gltf, out, here, warnings);
+  }
 }
 
 /// Turns the light to its node's -Z. False where the node has no direction and the light needs one.
@@ -58,11 +73,16 @@ void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warning
   if (in.type == "spot") out.type = LightType::spot;
   if (in.type == "directional") out.type = LightType::directional;
   if (in.range > 0) out.range_m = static_cast<float>(in.range);
-  read_extras(gltf, lights["lights"][number], place(lights, "lights", number), out, warnings);
+  const std::string of_light = place(lights, "lights", number);
+  if (lights["lights"][number].value("range", 1.0) == 0) warn_of_range(gltf, out, of_light, warnings);
+  read_extras(gltf, lights["lights"][number], of_light, out, warnings);
   read_extras(gltf, gltf.json["nodes"][placed.node], here, out, warnings);
   if (out.intensity == 0 || std::max({out.color.r, out.color.g, out.color.b}) == 0) {
     warnings.add(gltf.file, here, "a light without intensity or colour is skipped");
     return;
+  }
+  if (std::max({out.color.r, out.color.g, out.color.b}) > 1) {
+    warnings.add(gltf.file, here, "a light's colour is above 1, where glTF's end: it is that much brighter");
   }
   if (!aim(placed, out)) {
     warnings.add(gltf.file, here, "a light whose node has zero scale has no direction and is skipped");

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "../specular_glossiness.h"
 #include "extras.h"
 
 namespace chandelier::baker {
@@ -59,13 +60,10 @@ UvTransform uv_transform(const Json& json) {
   return {glm::vec3(c * scale[0], s * scale[1], offset[0]), glm::vec3(-s * scale[0], c * scale[1], offset[1])};
 }
 
-/// The extension that brings images of this format, or nullptr for others.
-const char* extension_of_format(const std::vector<std::uint8_t>& bytes) {
-  const auto starts_with = [&](std::string_view magic) {
-    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-  };
-  if (starts_with("\xABKTX 20")) return "KHR_texture_basisu";
-  return starts_with("RIFF") ? "EXT_texture_webp" : nullptr;
+/// An image of KHR_texture_basisu, which is not decoded.
+bool is_ktx2(const std::vector<std::uint8_t>& bytes) {
+  constexpr std::string_view kMagic = "\xABKTX 20";
+  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
 }
 
 }  // namespace
@@ -101,9 +99,14 @@ std::uint32_t Materials::add_material(int index) {
     out.double_sided = in.doubleSided;
     const Json& json = gltf_.json["materials"][static_cast<std::size_t>(index)];
     out.unlit = json.contains(Json::json_pointer("/extensions/KHR_materials_unlit"));
-    const Json metallic_roughness = json.value("pbrMetallicRoughness", Json::object());
-    out.base_color = use_texture(metallic_roughness, "baseColorTexture", in.alphaMode == "MASK", here);
-    out.metallic_roughness = use_texture(metallic_roughness, "metallicRoughnessTexture", false, here);
+    static const Json::json_pointer kGlossy("/extensions/KHR_materials_pbrSpecularGlossiness");
+    if (json.contains(kGlossy)) {  // which the extension prefers, where a material has both
+      convert(json[kGlossy], in.alphaMode == "MASK", here, out);
+    } else {
+      const Json metallic_roughness = json.value("pbrMetallicRoughness", Json::object());
+      out.base_color = use_texture(metallic_roughness, "baseColorTexture", in.alphaMode == "MASK", here);
+      out.metallic_roughness = use_texture(metallic_roughness, "metallicRoughnessTexture", false, here);
+    }
     out.normal = use_texture(json, "normalTexture", false, here);
     out.occlusion = use_texture(json, "occlusionTexture", false, here);
     out.emissive_map = use_texture(json, "emissiveTexture", false, here);
@@ -156,21 +159,75 @@ TextureUse Materials::use_texture(const Json& owner, const char* key, bool alpha
 }
 
 std::optional<std::uint32_t> Materials::image_of(const Json& texture, bool alpha, const std::string& where) {
-  std::string lacking;  // the extension whose image is left out
-  for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp"}) {
-    if (texture.contains("extensions") && texture["extensions"].contains(name)) lacking = name;
-  }
-  if (texture.contains("source")) {
-    const std::uint32_t image = use_image(texture["source"].get<std::size_t>());
-    const char* extension = extension_of_format(scene_.images[image].bytes);
-    if (!extension) return image;
-    lacking = extension;
+  static const Json::json_pointer kWebp("/extensions/EXT_texture_webp/source"), kKtx2("/extensions/KHR_texture_basisu");
+  bool lacking = texture.contains(kKtx2);  // an image that is not decoded is left out
+  for (const Json& source : {texture.value("source", Json()), texture.value(kWebp, Json())}) {
+    if (source.is_null()) continue;
+    const std::uint32_t image = use_image(source.get<std::size_t>());
+    if (!is_ktx2(scene_.images[image].bytes)) return image;
+    lacking = true;
   }
   const std::string what =
-      lacking.empty() ? "texture has no image" : "has no PNG or JPEG image but only that of " + lacking;
-  if (alpha && !lacking.empty()) fail(gltf_.file + ": " + where, what + ", whose alpha would make shadows");
+      lacking ? "has no PNG, JPEG or WebP image but only that of KHR_texture_basisu" : "texture has no image";
+  if (alpha && lacking) fail(gltf_.file + ": " + where, what + ", whose alpha would make shadows");
   warnings_.add(gltf_.file, where, what + " and is left out");
   return std::nullopt;
+}
+
+void Materials::convert(const Json& glossy, bool alpha, const std::string& here, Material& out) {
+  ++converted_;
+  const std::string where = here + ", KHR_materials_pbrSpecularGlossiness";
+  const auto diffuse_factor = glossy.value("diffuseFactor", std::array<float, 4>{1, 1, 1, 1});
+  const auto specular_factor = glossy.value("specularFactor", std::array<float, 3>{1, 1, 1});
+  SpecularGlossiness factors;
+  factors.diffuse_factor = {diffuse_factor[0], diffuse_factor[1], diffuse_factor[2]};
+  factors.specular_factor = {specular_factor[0], specular_factor[1], specular_factor[2]};
+  factors.glossiness_factor = glossy.value("glossinessFactor", 1.0f);
+  TextureUse diffuse = use_texture(glossy, "diffuseTexture", alpha, where);
+  TextureUse mirror = use_texture(glossy, "specularGlossinessTexture", false, where);
+  const bool colored = diffuse.texture != kNone, mirrored = mirror.texture != kNone;
+  const bool alike = diffuse.uv1 == mirror.uv1 && diffuse.uv_transform == mirror.uv_transform;
+  const MetallicColor plain = metallic_color(factors.diffuse_factor, factors.specular_factor);
+  out.base_color_factor = {plain.base_color, diffuse_factor[3]};
+  out.metallic_factor = plain.metallic;
+  out.roughness_factor = 1 - factors.glossiness_factor;
+  if (!mirrored && (!colored || is_dielectric(factors.specular_factor))) {  // then the conversion is a factor
+    out.base_color = diffuse;
+    return;
+  }
+  if (mirrored) factors.specular_glossiness = scene_.textures[mirror.texture].image;
+  if (colored && mirrored && !alike) {
+    warnings_.add(gltf_.file, where, "its two textures are mapped differently: what is metal in them is not told");
+    out.base_color = diffuse;
+    out.base_color_factor = {factors.diffuse_factor, diffuse_factor[3]};
+    out.metallic_factor = 0;
+  } else {
+    if (colored) factors.diffuse = scene_.textures[diffuse.texture].image;
+    out.base_color = colored ? diffuse : mirror;
+    out.base_color.texture = use_converted(factors, out.base_color);
+    out.base_color_factor = {1, 1, 1, diffuse_factor[3]};
+    out.metallic_factor = 1;
+  }
+  out.metallic_roughness = mirrored ? mirror : diffuse;
+  out.metallic_roughness.texture = use_converted(factors, out.metallic_roughness);
+  out.roughness_factor = 1;
+}
+
+std::uint32_t Materials::use_converted(const SpecularGlossiness& factors, const TextureUse& like) {
+  const auto known = std::find_if(converted_images_.begin(), converted_images_.end(),
+                                  [&](const auto& each) { return each.first == factors; });
+  std::uint32_t image = known == converted_images_.end() ? kNone : known->second;
+  if (image == kNone) {
+    const std::uint32_t from = factors.diffuse == kNone ? factors.specular_glossiness : factors.diffuse;
+    const EncodedImage& source = scene_.images[from];
+    scene_.images.push_back({source.name, source.where, {}, source.file, factors});
+    image = fit_u32(scene_.images.size() - 1, "images");
+    converted_images_.emplace_back(factors, image);
+  }
+  Texture texture = scene_.textures[like.texture];
+  texture.image = image;
+  scene_.textures.push_back(texture);
+  return fit_u32(scene_.textures.size() - 1, "textures");
 }
 
 std::uint32_t Materials::add_texture(std::size_t index, std::uint32_t image) {
@@ -195,14 +252,17 @@ std::uint32_t Materials::use_image(std::size_t number) {
   if (!added) return it->second;
   const Json& in = gltf_.json["images"][number];
   EncodedImage out;
-  out.where = gltf_.file + ": " + place(gltf_.json, "images", number);
+  std::string here = place(gltf_.json, "images", number);
+  out.file = gltf_.file;
+  out.where = gltf_.file + ": " + here;
   out.name = in.value("name", "");
   if (in.contains("uri")) {
     const std::string uri = in["uri"].get<std::string>();
     const bool embedded = uri.rfind("data:", 0) == 0;
     if (out.name.empty() && !embedded) out.name = uri;
-    if (!embedded) out.where += " (" + shortened(uri, 80) + ")";
-    const Bytes file = read_uri(gltf_, uri, out.where);
+    if (!embedded) here += " (" + shortened(uri, 80) + ")";
+    out.where = gltf_.file + ": " + here;
+    const Bytes file = read_uri(gltf_, uri, here, warnings_);
     out.bytes.assign(file.bytes.begin(), file.bytes.end());
   } else if (in.contains("bufferView")) {
     const auto bytes = view_bytes(gltf_, in["bufferView"].get<int>(), out.where);

@@ -20,6 +20,9 @@ class Materials {
   /// Says what had to be left out of the materials used.
   void warn() const;
 
+  /// Materials of specular-glossiness among those used.
+  std::uint64_t converted() const { return converted_; }
+
  private:
   std::uint32_t add_material(int material);
   void read_transmission(const Json& material, const std::string& here, Material& out);
@@ -27,6 +30,10 @@ class Materials {
   TextureUse use_texture(const Json& owner, const char* key, bool alpha, const std::string& here);
   /// The image of a texture, where it has one that can be read.
   std::optional<std::uint32_t> image_of(const Json& texture, bool alpha, const std::string& where);
+  /// KHR_materials_pbrSpecularGlossiness, `glossy`, as the metallic-roughness that is nearest to it.
+  void convert(const Json& glossy, bool alpha, const std::string& here, Material& out);
+  /// The image that a texture of `factors` is converted to, and a texture of it like `like`.
+  std::uint32_t use_converted(const SpecularGlossiness& factors, const TextureUse& like);
   std::uint32_t use_image(std::size_t image);
   std::uint32_t add_texture(std::size_t texture, std::uint32_t image);
 
@@ -35,7 +42,8 @@ class Materials {
   Warnings& warnings_;
   std::map<int, std::uint32_t> materials_;
   std::map<std::size_t, std::uint32_t> textures_, images_;
-  std::size_t blended_ = 0;
+  std::vector<std::pair<SpecularGlossiness, std::uint32_t>> converted_images_;
+  std::size_t blended_ = 0, converted_ = 0;
 };
 
 }  // namespace chandelier::baker

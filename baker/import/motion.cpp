@@ -15,8 +15,9 @@ namespace {
 
 using Flags = std::vector<std::uint8_t>;
 
-bool carries(const tinygltf::Node& node) {
-  return node.mesh >= 0 || node.camera >= 0 || node.extensions.contains("KHR_lights_punctual");
+bool carries(const tinygltf::Node& node, bool visible) {
+  if (node.camera >= 0) return true;
+  return visible && (node.mesh >= 0 || node.extensions.contains("KHR_lights_punctual"));
 }
 
 /// The parts of a rest pose that has a matrix: as near as they come, since nothing animates such a node.
@@ -87,7 +88,7 @@ Flags used_skins(const Gltf& gltf, const std::vector<PlacedNode>& placed, const 
   Flags used(gltf.json.contains("skins") ? gltf.json["skins"].size() : 0, 0);
   for (const PlacedNode& each : placed) {
     const tinygltf::Node& node = gltf.model.nodes[each.node];
-    if (node.skin >= 0 && node.mesh >= 0) used[static_cast<std::size_t>(node.skin)] = 1;
+    if (each.visible && node.skin >= 0 && node.mesh >= 0) used[static_cast<std::size_t>(node.skin)] = 1;
   }
   for (std::size_t s = 0; s < used.size(); ++s) {
     for (const Json& joint : gltf.json["skins"][s]["joints"]) {
@@ -173,7 +174,7 @@ Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene
   }
   for (const PlacedNode& each : placed) {  // parents first
     if (each.parent != SIZE_MAX && motion.moves[each.parent]) motion.moves[each.node] = 1;
-    if (motion.moves[each.node] && carries(gltf.model.nodes[each.node])) keep(each.node, parents, kept);
+    if (motion.moves[each.node] && carries(gltf.model.nodes[each.node], each.visible)) keep(each.node, parents, kept);
   }
   const Flags used = used_skins(gltf, placed, in_scene, warnings);
   for (std::size_t s = 0; s < used.size(); ++s) {

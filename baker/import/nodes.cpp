@@ -32,10 +32,16 @@ glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where)
   return out;
 }
 
-std::vector<std::size_t> root_nodes(const Gltf& gltf) {
+/// KHR_node_visibility.
+bool is_visible(const Gltf& gltf, std::size_t node) {
+  static const Json::json_pointer kPath("/extensions/KHR_node_visibility/visible");
+  return gltf.json["nodes"][node].value(kPath, true);
+}
+
+std::vector<std::size_t> root_nodes(const Gltf& gltf, std::optional<std::size_t> scene) {
   const tinygltf::Model& model = gltf.model;
-  if (!model.scenes.empty()) {
-    const auto& nodes = model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))].nodes;
+  if (scene) {
+    const auto& nodes = model.scenes[*scene].nodes;
     return {nodes.begin(), nodes.end()};
   }
   std::vector<std::uint8_t> is_child(model.nodes.size(), 0);
@@ -70,11 +76,11 @@ std::string name_of(const tinygltf::Node& node, const std::string& own) {
   return node.name.empty() ? own : node.name;
 }
 
-std::vector<PlacedNode> place_nodes(const Gltf& gltf) {
+std::vector<PlacedNode> place_nodes(const Gltf& gltf, std::optional<std::size_t> scene) {
   std::vector<PlacedNode> out;
   std::vector<std::uint8_t> seen(gltf.model.nodes.size(), 0);
   std::vector<PlacedNode> open;  // a stack of nodes with their parents' transforms: any depth
-  const auto roots = root_nodes(gltf);
+  const auto roots = root_nodes(gltf, scene);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it) open.push_back({*it, glm::dmat4(1)});
   while (!open.empty()) {
     PlacedNode placed = open.back();
@@ -86,9 +92,11 @@ std::vector<PlacedNode> place_nodes(const Gltf& gltf) {
     placed.parent_from_local = local_transform(node, where);
     placed.world_from_local = placed.world_from_local * placed.parent_from_local;
     check_place(placed.world_from_local, where);
+    placed.visible = placed.visible && is_visible(gltf, placed.node);
     out.push_back(placed);
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it) {
-      open.push_back({static_cast<std::size_t>(*it), placed.world_from_local, glm::dmat4(1), placed.node});
+      open.push_back(
+          {static_cast<std::size_t>(*it), placed.world_from_local, glm::dmat4(1), placed.node, placed.visible});
     }
   }
   return out;

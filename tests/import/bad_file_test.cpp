@@ -73,7 +73,7 @@ TEST(BadInput, IsNamedWhereAnImageCannotBeRead) {
   EXPECT_EQ(error({{"uri", "gone.png"}}),
             "image 0 (gone.png): no such file (" + (scratch_folder() / "gone.png").string() + ")");
   write_bytes(scratch_folder() / "text.png", "no picture");
-  EXPECT_EQ(error({{"uri", "text.png"}}), "image 0 (text.png): is neither PNG nor JPEG (10 bytes)");
+  EXPECT_EQ(error({{"uri", "text.png"}}), "image 0 (text.png): is neither PNG, JPEG nor WebP (10 bytes)");
   EXPECT_EQ(error({{"uri", "a\nb.png"}}),
             "image 0 (a\\nb.png): no such file (" + (scratch_folder() / "a").string() + "\\nb.png)");
   EXPECT_EQ(error({{"bufferView", 7}}), "image 0, bufferView: points past the end, there are 2 (7)");

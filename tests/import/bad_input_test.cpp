@@ -250,11 +250,32 @@ const Case kCases[] = {
        g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", -1}}};
      },
      "light 0, intensity: is out of range (-1)"},
-    {"range of zero",
+    {"range of nearly zero",
      [](GltfBuilder& g) {
-       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"range", 0}}};
+       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"range", 1e-13}}};
      },
-     "light 0, range: is out of range (0)"},
+     "light 0, range: is out of range (1e-13)"},
+    {"range below zero",
+     [](GltfBuilder& g) {
+       g.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"range", -1}}};
+     },
+     "light 0, range: is out of range (-1)"},
+    {"visibility of another type",
+     [](GltfBuilder& g) { g.json["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = "no"; },
+     "node 0 'triangle', extensions, KHR_node_visibility, visible: is not true or false (\"no\")"},
+    {"glossiness out of range",
+     [](GltfBuilder& g) {
+       g.json["materials"] = {{{"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"glossinessFactor", 2}}}}}}};
+     },
+     "material 0, extensions, KHR_materials_pbrSpecularGlossiness, glossinessFactor: is out of range (2)"},
+    {"diffuse texture out of range",
+     [](GltfBuilder& g) {
+       g.json["materials"] = {
+           {{"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseTexture", {{"index", 0}}}}}}}}};
+     },
+     "material 0, extensions, KHR_materials_pbrSpecularGlossiness, diffuseTexture, index: points past the end, there "
+     "are "
+     "0 (0)"},
     {"cone inside out",
      [](GltfBuilder& g) {
        g.json["extensions"]["KHR_lights_punctual"]["lights"] = {

@@ -282,7 +282,7 @@ GltfBuilder with_base_color(const Json& texture_info, const Json& texture) {
   gltf.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", texture_info}}}}};
   gltf.json["images"] = {
       {{"uri", "data:image/png;base64," + base64({0x89, 'P', 'N', 'G'})}},
-      {{"uri", "data:image/webp;base64," + base64({'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'})}}};
+      {{"uri", "data:image/ktx2;base64," + base64({0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, 0x0D, 0x0A})}}};
   gltf.json["textures"] = {texture};
   primitive(gltf)["material"] = 0;
   return gltf;
@@ -338,21 +338,21 @@ TEST(TextureSource, FallsBackToThePlainImage) {
   }
 }
 
-TEST(TextureSource, IsLeftOutByNameWhereThereIsNoPlainImage) {
-  for (const Json& texture : {Json{{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}}, Json{{"source", 1}}}) {
+TEST(TextureSource, IsLeftOutByNameWhereThereIsNoImageThatIsDecoded) {
+  for (const Json& texture : {Json{{"extensions", {{"KHR_texture_basisu", {{"source", 1}}}}}}, Json{{"source", 1}}}) {
     Warnings warnings;
     const Scene scene = with_base_color({{"index", 0}}, texture).import(&warnings);
     EXPECT_EQ(scene.materials.at(0).base_color.texture, kNone);
     ASSERT_GE(warnings.lines().size(), 1u);
-    EXPECT_NE(
-        warnings.lines().back().find("has no PNG or JPEG image but only that of EXT_texture_webp and is left out"),
-        std::string::npos);
+    EXPECT_NE(warnings.lines().back().find(
+                  "has no PNG, JPEG or WebP image but only that of KHR_texture_basisu and is left out"),
+              std::string::npos);
   }
 }
 
 TEST(TextureSource, OfEmissionThatIsLeftOutLeavesNoGlow) {
   for (const Json& info : {Json{{"index", 0}}, Json{{"index", 1}, {"texCoord", 2}}, Json{{"index", 1}}}) {
-    GltfBuilder gltf = with_base_color({{"index", 1}}, {{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}});
+    GltfBuilder gltf = with_base_color({{"index", 1}}, {{"extensions", {{"KHR_texture_basisu", {{"source", 1}}}}}});
     gltf.append("textures", {{"source", 0}});
     gltf.json["materials"][0]["emissiveTexture"] = info;
     gltf.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
@@ -366,10 +366,11 @@ TEST(TextureSource, OfEmissionThatIsLeftOutLeavesNoGlow) {
 TEST(TextureSource, IsAnErrorWhereItsAlphaWouldMakeShadows) {
   GltfBuilder gltf = with_base_color({{"index", 0}}, {{"extensions", {{"KHR_texture_basisu", {{"source", 1}}}}}});
   gltf.json["materials"][0]["alphaMode"] = "MASK";
-  EXPECT_NE(error_of(gltf.save("bad"))
-                .find("material 0, baseColorTexture: has no PNG or JPEG image but only that of KHR_texture_basisu, "
-                      "whose alpha would make shadows"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of(gltf.save("bad"))
+          .find("material 0, baseColorTexture: has no PNG, JPEG or WebP image but only that of KHR_texture_basisu, "
+                "whose alpha would make shadows"),
+      std::string::npos);
 }
 
 TEST(Unlit, IsKept) {

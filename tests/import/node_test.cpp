@@ -2,6 +2,8 @@
 // The node tree: transforms, scenes, mirrored instances, cameras.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "gltf_builder.h"
 
 namespace chandelier::baker::test {
@@ -117,6 +119,76 @@ TEST(Node, ShowsTheDefaultSceneTheFirstOrAllRoots) {
   gltf.json["scene"] = 1;
   ASSERT_EQ(gltf.import().instances.size(), 1u);
   EXPECT_EQ(gltf.import().instances.at(0).name, "b");
+}
+
+/// KHR_node_visibility of a node.
+Json shown(bool visible) {
+  return {{"KHR_node_visibility", {{"visible", visible}}}};
+}
+
+TEST(Node, ThatIsHiddenHidesMeshesAndLightsBelowItButNoCamera) {
+  GltfBuilder gltf = one_triangle();
+  gltf.json["extensionsRequired"] = gltf.json["extensionsUsed"] = {"KHR_node_visibility", "KHR_lights_punctual"};
+  gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  gltf.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  gltf.json["meshes"].push_back(gltf.json["meshes"][0]);  // that only a hidden node has: with a fault that nobody meets
+  gltf.json["meshes"][1]["primitives"][0]["attributes"]["POSITION"] = 1;
+  Json lamp = shown(true);  // which does not bring it back
+  lamp["KHR_lights_punctual"]["light"] = 0;
+  gltf.json["nodes"] = {{{"name", "room"}, {"children", {1, 2}}},
+                        {{"name", "seen"}, {"mesh", 0}, {"extensions", shown(true)}},
+                        {{"name", "gone"}, {"mesh", 1}, {"children", {3, 4}}, {"extensions", shown(false)}},
+                        {{"name", "lamp"}, {"extensions", lamp}},
+                        {{"name", "eye"}, {"camera", 0}, {"children", {5}}},
+                        {{"name", "leaf"}, {"mesh", 0}}};
+  Warnings warnings;
+  Scene scene = gltf.import(&warnings);
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.instances[0].name, "seen");
+  EXPECT_EQ(scene.meshes.size(), 1u);
+  EXPECT_TRUE(scene.lights.empty());
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_EQ(scene.cameras[0].name, "eye");
+  ASSERT_EQ(warnings.lines().size(), 1u);
+  EXPECT_NE(warnings.lines()[0].find("nodes: meshes and lights hidden by KHR_node_visibility are left out (node 2 "
+                                     "'gone', node 3 'lamp', node 5 'leaf')"),
+            std::string::npos)
+      << warnings.lines()[0];
+  gltf.json["nodes"][2].erase("extensions");
+  EXPECT_NE(error_of(gltf.save("shown")), "");  // the fault
+}
+
+TEST(Node, ThatIsHiddenHasNoPartInWhatMoves) {
+  GltfBuilder gltf = one_triangle();
+  gltf.add_node({{"mesh", 0}, {"name", "gone"}, {"extensions", shown(false)}});
+  gltf.add_node({{"name", "arm"}, {"children", {1}}});
+  gltf.json["animations"] = {
+      {{"samplers",
+        {{{"input", gltf.add_floats({0, 1}, "SCALAR", 1)}, {"output", gltf.add_positions({0, 0, 0, 0, 0, 5})}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "translation"}}}}}}}};
+  const Scene scene = gltf.import();
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.instances[0].node, kNone);
+  ASSERT_EQ(scene.nodes.size(), 1u);
+  EXPECT_EQ(scene.nodes[0].name, "arm");
+}
+
+TEST(Node, WhoseVisibilityIsAnimatedStaysAsItIsWithALine) {
+  GltfBuilder gltf = one_triangle();
+  const std::string pointer = "/nodes/0/extensions/KHR_node_visibility/visible";
+  const Json target = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+  gltf.json["extensionsUsed"] = {"KHR_animation_pointer", "KHR_node_visibility"};
+  gltf.json["animations"] = {
+      {{"samplers",
+        {{{"input", gltf.add_floats({0, 1}, "SCALAR", 1)}, {"output", gltf.add_floats({1, 0}, "SCALAR", 1)}}}},
+       {"channels", {{{"sampler", 0}, {"target", target}}}}}};
+  Warnings warnings;
+  EXPECT_EQ(gltf.import(&warnings).instances.size(), 1u);
+  const std::vector<std::string> lines = warnings.lines();
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+    return line.find("animation 0: animation by KHR_animation_pointer is skipped: what it changes stays as it is (" +
+                     pointer + ")") != std::string::npos;
+  }));
 }
 
 TEST(Node, WalksTreesOfAnyDepth) {

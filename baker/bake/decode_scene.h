@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Texels of a scene's images, of those too that are converted from others.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "../error.h"
+#include "../scene.h"
+#include "mips.h"
+
+namespace chandelier::baker {
+
+/// Calls `visit` with each image that holds the bytes of an image: itself, or those that it is converted from.
+template <typename Visit>
+void for_each_source(const Scene& scene, std::uint32_t image, Visit visit) {
+  const std::optional<SpecularGlossiness>& from = scene.images[image].converted_from;
+  if (!from) return visit(image);
+  for (const std::uint32_t source : {from->diffuse, from->specular_glossiness}) {
+    if (source != kNone) visit(source);
+  }
+}
+
+/// Texels as a colour and as anything else: two images only where they are converted.
+struct SceneTexels {
+  Texels color;
+  std::optional<Texels> data;
+  std::string damage;  // as DecodedTexels has it
+
+  const Texels& as(ImageUse use) const {
+    const bool is_color = use == ImageUse::color || use == ImageUse::masked_color;
+    return is_color || !data ? color : *data;
+  }
+};
+
+/// Throws Error where the image, or one that it is converted from, cannot be decoded.
+SceneTexels decode_image(const Scene& scene, std::uint32_t image);
+
+/// Says what was damaged. Throws Error instead where that is `strict`.
+void tell_damage(const EncodedImage& image, const std::string& damage, bool strict, Warnings& warnings);
+
+}  // namespace chandelier::baker

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Alpha is told by a bit of the chunk VP8X (RFC 9649, 2.7), lies in a chunk ALPH, or is told by a bit of a lossless
+// image's header (3.4).
+#include "webp.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+namespace chandelier::baker {
+namespace {
+
+constexpr std::size_t kFileHeader = 12, kChunkHeader = 8;
+constexpr std::uint8_t kExtendedAlpha = 0x10;  // of VP8X's first byte
+constexpr std::size_t kLosslessAlphaAt = 4;    // a byte of signature, 14 bits of width, 14 of height, then the bit
+constexpr std::uint8_t kLosslessAlpha = 0x10;
+
+std::uint32_t u32_at(const std::uint8_t* bytes) {
+  return std::uint32_t{bytes[3]} << 24 | std::uint32_t{bytes[2]} << 16 | std::uint32_t{bytes[1]} << 8 | bytes[0];
+}
+
+bool is(const std::uint8_t* chunk, std::string_view type) {
+  return std::memcmp(chunk, type.data(), 4) == 0;
+}
+
+/// A chunk's bytes with its header and padding, as far as they are there.
+std::size_t size_of_chunk(const std::vector<std::uint8_t>& bytes, std::size_t at) {
+  const std::size_t left = bytes.size() - at, size = u32_at(&bytes[at + 4]);
+  return std::min(left, kChunkHeader + size + size % 2);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> webp_without_alpha(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.size() < kFileHeader) return bytes;
+  std::vector<std::uint8_t> out(bytes.begin(), bytes.begin() + kFileHeader);
+  for (std::size_t at = kFileHeader; bytes.size() - at >= kChunkHeader;) {
+    const std::size_t size = size_of_chunk(bytes, at);
+    const auto chunk = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+    if (!is(&bytes[at], "ALPH")) {
+      const std::size_t data = out.size() + kChunkHeader;
+      out.insert(out.end(), chunk, chunk + static_cast<std::ptrdiff_t>(size));
+      if (is(&bytes[at], "VP8X") && size > kChunkHeader) out[data] &= static_cast<std::uint8_t>(~kExtendedAlpha);
+      if (is(&bytes[at], "VP8L") && size > kChunkHeader + kLosslessAlphaAt) {
+        out[data + kLosslessAlphaAt] &= static_cast<std::uint8_t>(~kLosslessAlpha);
+      }
+    }
+    at += size;
+  }
+  const auto riff = static_cast<std::uint32_t>(out.size() - 8);
+  for (std::size_t i = 0; i < 4; ++i) out[4 + i] = static_cast<std::uint8_t>(riff >> 8 * i);
+  return out;
+}
+
+std::uint64_t webp_texels(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.size() < kFileHeader + kChunkHeader + 10) return 0;
+  const std::uint8_t *chunk = &bytes[kFileHeader], *data = chunk + kChunkHeader;
+  if (is(chunk, "VP8X")) {  // 24 bits each, less one
+    return std::uint64_t{(u32_at(data + 4) & 0xFFFFFF) + 1} * ((u32_at(data + 6) >> 8) + 1);
+  }
+  if (is(chunk, "VP8L")) {  // 14 bits each, less one
+    const std::uint32_t bits = u32_at(data + 1);
+    return std::uint64_t{(bits & 0x3FFF) + 1} * ((bits >> 14 & 0x3FFF) + 1);
+  }
+  if (!is(chunk, "VP8 ")) return 0;
+  return std::uint64_t{u32_at(data + 6) & 0x3FFF} * (u32_at(data + 6) >> 16 & 0x3FFF);  // after a tag and a start code
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of glTF 2.0's objects (its JSON schemas) and of KHR_lights_punctual's; what else extensions and extras hold
+// is their own affair.
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <string_view>
+
+#include "gltf_lint.h"
+
+namespace chandelier::baker {
+namespace {
+
+/// The keys of an object. Each may lead to an object, or to an array of objects, of a shape of its own.
+struct Shape {
+  std::map<std::string_view, const Shape*> keys;
+};
+
+/// Keys that lead to nothing of this kind.
+Shape plain(std::initializer_list<std::string_view> keys) {
+  Shape out;
+  for (const std::string_view key : keys) out.keys[key] = nullptr;
+  return out;
+}
+
+Shape shape(std::initializer_list<std::string_view> keys,
+            std::initializer_list<std::pair<std::string_view, const Shape*>> inner) {
+  Shape out = plain(keys);
+  for (const auto& [key, of] : inner) out.keys[key] = of;
+  return out;
+}
+
+// Where it says nothing else, as in the specification's list of objects.
+const Shape kTextureInfo = plain({"index", "texCoord"});
+const Shape kNormalTexture = plain({"index", "texCoord", "scale"});
+const Shape kOcclusionTexture = plain({"index", "texCoord", "strength"});
+const Shape kPbr = shape({"baseColorFactor", "metallicFactor", "roughnessFactor"},
+                         {{"baseColorTexture", &kTextureInfo}, {"metallicRoughnessTexture", &kTextureInfo}});
+const Shape kMaterial = shape({"name", "emissiveFactor", "alphaMode", "alphaCutoff", "doubleSided"},
+                              {{"pbrMetallicRoughness", &kPbr},
+                               {"normalTexture", &kNormalTexture},
+                               {"occlusionTexture", &kOcclusionTexture},
+                               {"emissiveTexture", &kTextureInfo}});
+const Shape kSparseIndices = plain({"bufferView", "byteOffset", "componentType"});
+const Shape kSparseValues = plain({"bufferView", "byteOffset"});
+const Shape kSparse = shape({"count"}, {{"indices", &kSparseIndices}, {"values", &kSparseValues}});
+const Shape kAccessor =
+    shape({"name", "bufferView", "byteOffset", "componentType", "normalized", "count", "type", "max", "min"},
+          {{"sparse", &kSparse}});
+const Shape kTarget = plain({"node", "path"});
+const Shape kChannel = shape({"sampler"}, {{"target", &kTarget}});
+const Shape kAnimationSampler = plain({"input", "interpolation", "output"});
+const Shape kAnimation = shape({"name"}, {{"channels", &kChannel}, {"samplers", &kAnimationSampler}});
+const Shape kAsset = plain({"copyright", "generator", "version", "minVersion"});
+const Shape kBuffer = plain({"name", "uri", "byteLength"});
+const Shape kBufferView = plain({"name", "buffer", "byteOffset", "byteLength", "byteStride", "target"});
+const Shape kOrthographic = plain({"xmag", "ymag", "zfar", "znear"});
+const Shape kPerspective = plain({"aspectRatio", "yfov", "zfar", "znear"});
+const Shape kCamera = shape({"name", "type"}, {{"orthographic", &kOrthographic}, {"perspective", &kPerspective}});
+const Shape kImage = plain({"name", "uri", "mimeType", "bufferView"});
+const Shape kPrimitive = plain({"attributes", "indices", "material", "mode", "targets"});
+const Shape kMesh = shape({"name", "weights"}, {{"primitives", &kPrimitive}});
+const Shape kNode =
+    plain({"name", "camera", "children", "skin", "matrix", "mesh", "rotation", "scale", "translation", "weights"});
+const Shape kSampler = plain({"name", "magFilter", "minFilter", "wrapS", "wrapT"});
+const Shape kScene = plain({"name", "nodes"});
+const Shape kSkin = plain({"name", "inverseBindMatrices", "skeleton", "joints"});
+const Shape kTexture = plain({"name", "sampler", "source"});
+const Shape kSpot = plain({"innerConeAngle", "outerConeAngle"});
+const Shape kLight = shape({"name", "color", "intensity", "type", "range"}, {{"spot", &kSpot}});
+
+struct Section {
+  const char* name;
+  const Shape& of;
+};
+const Section kSections[] = {{"accessors", kAccessor},     {"animations", kAnimation}, {"buffers", kBuffer},
+                             {"bufferViews", kBufferView}, {"cameras", kCamera},       {"images", kImage},
+                             {"materials", kMaterial},     {"meshes", kMesh},          {"nodes", kNode},
+                             {"samplers", kSampler},       {"scenes", kScene},         {"skins", kSkin},
+                             {"textures", kTexture}};
+
+Shape root_shape() {
+  Shape out = shape({"extensionsUsed", "extensionsRequired", "scene"}, {{"asset", &kAsset}});
+  for (const Section& section : kSections) out.keys[section.name] = nullptr;
+  return out;
+}
+const Shape kRoot = root_shape();
+
+/// Characters to add, drop or replace (Levenshtein), whatever their case. At most 40 characters each.
+std::size_t distance(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (lower(a[i - 1]) != lower(b[j - 1]));
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+/// The known key that is nearest, where one is near enough to be meant; or nothing.
+std::string_view nearest(std::string_view key, const Shape& shape) {
+  if (key.size() > 40) return {};
+  std::string_view best;
+  std::size_t least = std::max<std::size_t>(2, key.size() / 3) + 1;  // a change of letters at most
+  for (const auto& [known, of] : shape.keys) {
+    const std::size_t far = distance(key, known);
+    if (far < least && far < known.size()) least = far, best = known;
+  }
+  return best;
+}
+
+struct KeyLint {
+  const Lint& lint;
+  std::uint64_t told = 0;
+
+  /// `place`: of the object, or of the one that it is in; empty for the glTF's own.
+  void unknown(const std::string& place, std::string_view key, const Shape& shape) {
+    constexpr std::uint64_t kMostTold = 3;  // names of a warning that are shown
+    std::string name = (place.empty() ? "" : place + ": ") + shortened(std::string(key), 40);
+    const std::string_view meant = told++ < kMostTold ? nearest(key, shape) : std::string_view();
+    if (!meant.empty()) name += ", is it " + std::string(meant) + "?";
+    lint.warnings.add(lint.file, "glTF", "unknown key is ignored", key.empty() ? "an empty name" : name);
+  }
+
+  template <typename Place>
+  void walk(const Json& value, const Shape& shape, const Place& place) {
+    if (value.is_array()) {
+      for (const Json& each : value) walk(each, shape, place);
+    }
+    if (!value.is_object()) return;
+    for (const auto& [key, inner] : value.items()) {
+      if (key == "extensions" || key == "extras") continue;
+      const auto known = shape.keys.find(key);
+      if (known == shape.keys.end()) {
+        unknown(place(), key, shape);
+      } else if (known->second) {
+        walk(inner, *known->second, place);
+      }
+    }
+  }
+};
+
+}  // namespace
+
+void lint_keys(const Lint& lint) {
+  KeyLint keys{lint};
+  keys.walk(lint.json, kRoot, [] { return std::string(); });
+  for (const auto& [name, of] : kSections) {
+    for (std::size_t i = 0; i < section_size(lint.json, name); ++i) {
+      keys.walk(lint.entry(name, i), of, [&] { return place(lint.json, name, i); });
+    }
+  }
+  const auto lights = lint.json.find("extensions");
+  if (lights == lint.json.end() || !lights->contains("KHR_lights_punctual")) return;
+  const Json& punctual = (*lights)["KHR_lights_punctual"];
+  for (std::size_t i = 0; i < section_size(punctual, "lights"); ++i) {
+    keys.walk(punctual["lights"][i], kLight, [&] { return place(punctual, "lights", i); });
+  }
+}
+
+}  // namespace chandelier::baker

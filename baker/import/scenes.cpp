@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// A name comes before a number, so that a scene named "2" can be had.
+#include "scenes.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "json_object.h"
+
+namespace chandelier::baker {
+namespace {
+
+constexpr std::size_t kMostListed = 10;
+
+std::optional<std::size_t> find_scene(const Json& json, const std::string& asked) {
+  const std::size_t count = section_size(json, "scenes");
+  for (std::size_t i = 0; i < count; ++i) {
+    if (json["scenes"][i].value("name", "") == asked) return i;
+  }
+  std::size_t number = 0;
+  const char* end = asked.data() + asked.size();
+  const auto [stop, error] = std::from_chars(asked.data(), end, number);
+  return error == std::errc() && stop == end && number < count ? std::optional(number) : std::nullopt;
+}
+
+[[noreturn]] void fail_unknown(const Gltf& gltf, const std::string& asked) {
+  const std::size_t count = section_size(gltf.json, "scenes");
+  std::string names;
+  for (std::size_t i = 0; i < std::min(count, kMostListed); ++i) {
+    names += (i ? ", " : "") + place(gltf.json, "scenes", i);
+  }
+  if (count > kMostListed) names += " and " + std::to_string(count - kMostListed) + " more";
+  fail(gltf.file + ": --scene", "there is no such scene, but " + names + " (" + shortened(asked, 80) + ")");
+}
+
+}  // namespace
+
+ChosenScene choose_scene(const Gltf& gltf, const std::string& asked, Warnings& warnings) {
+  const std::size_t count = section_size(gltf.json, "scenes");
+  if (count == 0) return {};
+  if (!asked.empty()) {
+    if (const auto number = find_scene(gltf.json, asked)) return {number, true, count - 1};
+    if (count > 1) fail_unknown(gltf, asked);
+  }
+  const auto number = static_cast<std::size_t>(std::max(gltf.model.defaultScene, 0));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i == number) continue;
+    warnings.add(gltf.file, place(gltf.json, "scenes", number),
+                 "is the only scene that is baked; --scene NAME or NUMBER takes another. Left out",
+                 place(gltf.json, "scenes", i));
+  }
+  return {number, false, count - 1};
+}
+
+}  // namespace chandelier::baker

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which of a glTF's scenes is imported.
+#pragma once
+
+#include <optional>
+
+#include "gltf.h"
+
+namespace chandelier::baker {
+
+struct ChosenScene {
+  std::optional<std::size_t> number;  // nothing where the file has no scenes
+  bool asked_for = false;             // it is the one that was asked for
+  std::size_t left_out = 0;           // how many others there are
+};
+
+/// The scene whose name or number is `asked`; else, and with nothing asked, the default one, or the first where none is
+/// named. Says which others a default leaves out. Throws Error where a file of several has not what was asked for.
+ChosenScene choose_scene(const Gltf& gltf, const std::string& asked, Warnings& warnings);
+
+}  // namespace chandelier::baker
