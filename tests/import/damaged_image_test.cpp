@@ -78,7 +78,8 @@ TEST(Damaged, JpegThatIsCutKeepsWhatIsThere) {
   cut.bytes.resize(whole.bytes.size() / 2);
   const DecodedTexels half = decode_image(cut);
   EXPECT_EQ(half.damage, "JPEG is cut short (" + std::to_string(cut.bytes.size()) + " bytes)");
-  EXPECT_TRUE(same_rows(half.texels, decode_image(whole).texels, 0, kSide / 4));
+  // A row less than the first blocks: colours reach over their edge.
+  EXPECT_TRUE(same_rows(half.texels, decode_image(whole).texels, 0, kSide / 4 - 1));
   EncodedImage ended = cut;  // ends as a JPEG does, but has half of its blocks
   ended.bytes.insert(ended.bytes.end(), {0xFF, 0xD9});
   EXPECT_EQ(decode_image(ended).damage, "Corrupt JPEG data: premature end of data segment");

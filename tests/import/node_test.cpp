@@ -132,7 +132,7 @@ TEST(Node, ThatIsHiddenHidesMeshesAndLightsBelowItButNoCamera) {
   gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
   gltf.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
   gltf.json["meshes"].push_back(gltf.json["meshes"][0]);  // that only a hidden node has: with a fault that nobody meets
-  gltf.json["meshes"][1]["primitives"][0]["attributes"]["POSITION"] = 1;
+  gltf.json["meshes"][1]["primitives"][0]["indices"] = gltf.add_indices({0, 1, 70});
   Json lamp = shown(true);  // which does not bring it back
   lamp["KHR_lights_punctual"]["light"] = 0;
   gltf.json["nodes"] = {{{"name", "room"}, {"children", {1, 2}}},
