@@ -187,6 +187,26 @@ TEST(Damaged, ImagesAreNamedInAWarningOrWhereThatIsStrictInAnError) {
       << error;
 }
 
+TEST(Damaged, MapsThatOnlyTellGlassAreNamedToo) {
+  EncodedImage cut = noisy_jpeg();
+  cut.bytes.resize(cut.bytes.size() - 2);
+  GltfBuilder gltf = showing(cut.bytes, "image/jpeg");
+  const Json transmission = {{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}}}};
+  gltf.json["materials"] = {{{"extensions", {{"KHR_materials_transmission", transmission}}}}};
+  Report report;
+  Warnings warnings;
+  BakeSettings settings;
+  bake(gltf.import(), settings, Progress(false), report, warnings);
+  const std::vector<std::string> lines = warnings.lines();
+  EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
+                          [](const std::string& line) {
+                            return line.find("image 0 'bark': JPEG is cut short") != std::string::npos;
+                          }),
+            1);
+  settings.images.strict = true;
+  EXPECT_THROW(bake(gltf.import(), settings, Progress(false), report, warnings), Error);
+}
+
 TEST(Webp, IsDecodedToItsColours) {
   Bytes pixels;
   for (std::size_t i = 0; i < 16 * 16; ++i) pixels.insert(pixels.end(), {200, 100, 50});

@@ -198,6 +198,17 @@ TEST(SpecularGlossiness, OfTwoTexturesIsMadeOfBoth) {
   EXPECT_LT(texel_of(pack, base, 63).g, 5);
 }
 
+TEST(SpecularGlossiness, DecidesWithItsConvertedTexelsWhatIsGlass) {
+  GltfBuilder gltf =
+      glossy_triangle({{"specularGlossinessTexture", {{"index", 1}}}, {"specularFactor", {0.04, 0.04, 0.04}}});
+  add_textures(gltf);
+  gltf.json["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1;
+  EXPECT_TRUE(bake_scene(gltf.import(), raw_textures()).materials.at(0).shadowless);  // no metal anywhere
+  const Json metal = {{"diffuseTexture", {{"index", 0}}}};                            // a white mirror all over
+  gltf.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = metal;
+  EXPECT_FALSE(bake_scene(gltf.import(), raw_textures()).materials.at(0).shadowless);
+}
+
 TEST(SpecularGlossiness, OfTexturesThatAreMappedDifferentlyLosesItsMetalWithALine) {
   GltfBuilder gltf = glossy_triangle(
       {{"diffuseTexture", {{"index", 0}}}, {"specularGlossinessTexture", {{"index", 1}, {"texCoord", 1}}}});
