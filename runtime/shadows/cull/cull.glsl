@@ -26,10 +26,11 @@ void main() {
   uint view = cull.first_view + thread / cull.batch_instance_count;
   uint number = thread % cull.batch_instance_count;
   BatchInstance candidate = batch_instances[number];
-  uint run = run_of_batch_instance[number];
-  bool visible = survives(views[view], candidate) && (run & SHADOWLESS_BIT * cull.casters_only) == 0u;
+  bool visible = survives(views[view], candidate);
   if (!visible && cull.keep_order == 0u) return;
 
+  uint run = run_of_batch_instance[number];
+  if ((run & SHADOWLESS_BIT * cull.casters_only) != 0u) return;  // shadows' draws have no order that it could break
   run &= ~SHADOWLESS_BIT;
   bool merged = run < cull.merged_runs;
   uint list = merged ? 0u : run + 1u - cull.merged_runs;
