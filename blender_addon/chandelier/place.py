@@ -56,6 +56,7 @@ class Placing:
         if not sources:
             self.report({"WARNING"}, f"No light was placed: select {self.wanted} first")
             return {"CANCELLED"}
+        context.view_layer.update()  # adjusted in the redo panel: right after an undo Blender 4.3 knows no place of anything
         made = []
         for source in sources:
             points, ways = self.places(context, source, rng)

@@ -46,9 +46,14 @@ class Redo(unittest.TestCase):
             self.assertEqual(self.steps(name, "lights", "made", "adjusted", "again"), [count, count + 1, count + 2], name)
             self.assertEqual(self.steps(name, "selected", "made", "adjusted", "again"), [count, count + 1, count + 2], name)
 
+    def test_lights_stay_at_their_object(self):
+        for name in PLACED:
+            for places in self.steps(name, "places", "made", "adjusted", "again"):
+                self.assertTrue(all(abs(x - 8) < 3 for x, _, _ in places), (name, places))
+
     def test_a_light_at_an_object_moves(self):
         places = self.steps("place_at_selected", "places", "made", "adjusted", "again")
-        self.assertEqual(places, [[[0, 0, 1]], [[0, 0, 1.5]], [[0, 0, 1]]])
+        self.assertEqual(places, [[[8, 0, 1]], [[8, 0, 1.5]], [[8, 0, 1]]])
 
     def test_edits_begin_anew_from_what_was_there_before(self):
         for name in ("edit_lights", "strength"):

@@ -47,9 +47,10 @@ class NoShadow(MeshCase):
         bpy.ops.object.text_add()
         bpy.context.object.visible_shadow = False
         bpy.ops.curve.primitive_bezier_circle_add()
-        bpy.context.object.visible_shadow, bpy.context.object.data.bevel_depth = False, 0.1
+        ring = bpy.context.object
+        ring.name, ring.visible_shadow, ring.data.bevel_depth = "Ring", False, 0.1
         self.export()
-        self.assertEqual(self.shadowless(), ["BezierCircle", "Text"])
+        self.assertEqual(self.shadowless(), ["Ring", "Text"])
 
     def test_a_material_says_so_by_its_shadow_mode(self):
         if not HAS_SHADOW_MODE:

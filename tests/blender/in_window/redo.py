@@ -17,6 +17,7 @@ import blender_case  # noqa: E402
 SHOTS = pathlib.Path(os.environ["CHANDELIER_SHOTS"])
 STEP_S = 0.1
 HEADER_PX, FIRST_ROW_PX, ROW_PX = 12, 44, 23  # from the panel's upper edge, and from row to row
+AWAY = (8, 0, 1)  # from the origin, where lights come out that take an object's place before it is known again
 OPEN_PX = 30  # a panel that is less high is closed
 log = {}
 
@@ -65,11 +66,11 @@ def clear():
 
 
 def make_curve():
-    bpy.ops.curve.primitive_bezier_circle_add(radius=2)
+    bpy.ops.curve.primitive_bezier_circle_add(radius=2, location=AWAY)
 
 
 def make_cube():
-    bpy.ops.mesh.primitive_cube_add(size=2, location=(0, 0, 1))
+    bpy.ops.mesh.primitive_cube_add(size=2, location=AWAY)
     for corner in bpy.context.object.data.vertices:
         corner.co.z += 0.5  # its middle is above its origin
 
