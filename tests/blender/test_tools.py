@@ -123,4 +123,5 @@ def test_the_baker_itself(tmp_path):
 def test_the_bakers_passes_are_known_in_their_order(tmp_path):
     command = tools.bake_command(str(BIN / "chandelier-bake"), ROOM / "room.gltf", tmp_path / "a.chandelier", tmp_path / "cache")
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert [tools.PASS_LINE.match(line)[1] for line in done.stderr.splitlines()] == list(tools.PASSES)
+    lines = [line for line in done.stderr.splitlines() if not tools.TOLD_LINE.match(line)]  # it warns that the room has no lights
+    assert [tools.PASS_LINE.match(line)[1] for line in lines] == list(tools.PASSES)

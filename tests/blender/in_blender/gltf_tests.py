@@ -46,16 +46,19 @@ class GltfCase(BlenderCase):
     def lights(self):
         return {light["name"]: light for light in self.gltf()["extensions"]["KHR_lights_punctual"]["lights"]}
 
-    def baked(self):
-        """Lights as chandelier-inspect tells them, by name; more of a name in a list."""
+    def report(self):
+        """What chandelier-inspect says of the baked pack."""
         if not (BIN / "chandelier-bake").exists():
             self.skipTest(f"no chandelier-bake in {BIN}")
         pack = self.folder / "scene.chandelier"
         done = subprocess.run([BIN / "chandelier-bake", self.path, "-o", pack, "--quiet"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        report = json.loads(subprocess.run([BIN / "chandelier-inspect", pack, "--json"], capture_output=True, check=True).stdout)
+        return json.loads(subprocess.run([BIN / "chandelier-inspect", pack, "--json"], capture_output=True, check=True).stdout)
+
+    def baked(self):
+        """Its lights, by name; more of a name in a list."""
         found = {}
-        for light in report["lights"]:
+        for light in self.report()["lights"]:
             found.setdefault(light["name"], []).append(light)
         return found
 

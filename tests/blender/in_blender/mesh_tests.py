@@ -1,15 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What meshes become in the exported file: which throw no shadow, and how shape keys come out."""
 
-import json
-import math
-import subprocess
-
 import bpy
-import numpy as np
 
 from blender_case import part
-from gltf_tests import BIN, GltfCase
+from gltf_tests import GltfCase
 
 HAS_SHADOW_MODE = "shadow_method" in bpy.types.Material.bl_rna.properties  # EEVEE's, until 4.1
 
@@ -30,6 +25,17 @@ class MeshCase(GltfCase):
         for key, value in values.items():
             setattr(made, key, value)
         return made
+
+    def keyed(self, **keys):
+        """A cube with a key for each name, which moves its upper vertices up by so much."""
+        cube = self.cube("Cube", size=2)
+        cube.shape_key_add(name="Basis")
+        for name, height in keys.items():
+            key = cube.shape_key_add(name=name)
+            for number, vertex in enumerate(cube.data.vertices):
+                if vertex.co.z > 0:
+                    key.data[number].co.z += height
+        return cube
 
     def shadowless(self, kind="nodes"):
         """Names of the file's nodes or materials whose extras say so."""
@@ -131,17 +137,6 @@ class NoShadow(MeshCase):
 
 
 class ShapeKeys(MeshCase):
-    def keyed(self, **keys):
-        """A cube with a key for each name, which moves its upper vertices up by so much."""
-        cube = self.cube("Cube", size=2)
-        cube.shape_key_add(name="Basis")
-        for name, height in keys.items():
-            key = cube.shape_key_add(name=name)
-            for number, vertex in enumerate(cube.data.vertices):
-                if vertex.co.z > 0:
-                    key.data[number].co.z += height
-        return cube
-
     def assert_as_seen(self, cube, has_targets):
         """The file's vertices, morphed by its weights, reach as high as Blender's evaluated ones."""
         self.export()
@@ -238,6 +233,28 @@ class ShapeKeys(MeshCase):
         bpy.context.view_layer.update()
         (error,) = part("export").export(bpy.context, str(self.path)).errors
         self.assertIn("Cube [library.blend]: belongs to another file", error)
+
+
+class Baked(MeshCase):
+    def setUp(self):
+        super().setUp()
+        self.lamp(location=(0, 0, 8))
+
+    def test_what_throws_no_shadow_throws_none_in_the_pack(self):
+        self.cube("Bulb").visible_shadow = False
+        shade = self.cube("Shade", location=(4, 0, 0))
+        shade.data.materials.append(self.material("Paper", **({"shadow_method": "NONE"} if HAS_SHADOW_MODE else {})))
+        self.export()
+        report = self.report()
+        self.assertEqual((report["shadowless_instances"], report["triangles"]["shadowless"]), (1, 24 if HAS_SHADOW_MODE else 12))
+
+    def test_shape_keys_reach_as_high_as_in_blender(self):
+        cube = self.keyed(Up=2)
+        cube.data.shape_keys.key_blocks["Up"].value = 0.5
+        for pinned, height in ((False, 2), (True, 3)):
+            cube.show_only_shape_key, cube.active_shape_key_index = pinned, 1
+            self.export()
+            self.assertAlmostEqual(self.report()["bounds_max_ws"][1], height, places=3)
 
 
 del GltfCase, MeshCase  # they have no tests of their own
