@@ -131,6 +131,13 @@ glm::ivec4 texel_of(const pack::Contents& pack, std::uint32_t texture, std::size
   return out;
 }
 
+TEST(SpecularGlossiness, WithoutTheTextureThatItNamesIsRefused) {
+  EXPECT_NE(error_of(glossy_triangle({{"diffuseTexture", {{"index", 0}}}}).save("bad"))
+                .find("material 0, extensions, KHR_materials_pbrSpecularGlossiness, diffuseTexture, index: points past "
+                      "the end, there are 0 (0)"),
+            std::string::npos);
+}
+
 TEST(SpecularGlossiness, FactorsAloneBecomeFactors) {
   const Json gold = {
       {"diffuseFactor", {0, 0, 0, 0.5}}, {"specularFactor", {1.0, 0.766, 0.336}}, {"glossinessFactor", 0.9}};
