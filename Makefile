@@ -63,7 +63,7 @@ test-blender4:
 
 # Only the programs that it runs, and the scenes one after the other, the quickest first, so that a picture is there soon.
 demo: setup
-	@echo "demo: step 1 of $(DEMO_STEPS), most of the time: chandelier-bake and chandelier-play, whose files Ninja counts"
+	@echo "demo: step 1 of $(DEMO_STEPS), most of the time: the programs ([done/all] below); then the scenes $(DEMOS)"
 	@$(MAKE) --no-print-directory $(BUILD)/build.ninja
 	@cmake --build --preset release --target chandelier-bake chandelier-play
 	@set -e; step=1; for name in $(DEMOS); do step=$$((step + 1)); \
@@ -127,7 +127,7 @@ $(BUILD)/demo/%.chandelier: $(BUILD)/demo/%.glb $(BAKE)
 $(BUILD)/demo/%/report.html: $(BUILD)/demo/%.chandelier $(PLAY)
 	$(PLAY) $< --compare reference,lightcluster --size $(DEMO_SIZE) --report $(@D)
 	@touch $@
-	@echo "demo: pictures of $*: $(CURDIR)/$(@D)"
+	@echo "demo: pictures of $*: $(CURDIR)/$(@D)/reference.png, and the others beside it"
 
 .PRECIOUS: $(BUILD)/demo/%.glb $(BUILD)/demo/%.chandelier
 
