@@ -143,7 +143,7 @@ STEPS = [
     wait_for(lambda: first_player == [handover().player], "the same player"), close_player,
     wait_for(lambda: handover().player is None, "player closed"), fail_bake,
     wait_for(lambda: "the output is a folder" in handover().error, "error"), lambda: None, lambda: screenshot("error"), slow_bake,
-    wait_for(lambda: handover().bake and handover().bake.doing == "materials", "progress"), lambda: None,
+    wait_for(lambda: handover().bake and handover().bake.passed == 1, "progress"), lambda: None,
     lambda: screenshot("progress"), lambda: bpy.ops.chandelier.cancel(),
     wait_for(lambda: handover().bake is None and "cancelled" in handover().error, "cancelled"), lambda: print("seen: the end"),
     lambda: bpy.ops.wm.quit_blender()]
