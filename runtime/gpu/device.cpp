@@ -132,6 +132,16 @@ uint32_t find_queue_family(VkPhysicalDevice device) {
   return UINT32_MAX;
 }
 
+// What pixels tell their neighbours in shadows/filter/block.glsl.
+bool subgroups_share(VkPhysicalDevice device) {
+  VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
+  vkGetPhysicalDeviceProperties2(device, &properties);
+  constexpr VkSubgroupFeatureFlags needed =
+      VK_SUBGROUP_FEATURE_VOTE_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+  return (subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) && (subgroup.supportedOperations & needed) == needed;
+}
+
 std::string missing(VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
   vkGetPhysicalDeviceProperties(device, &properties);
@@ -141,6 +151,7 @@ std::string missing(VkPhysicalDevice device) {
   for (const auto& need : have.needs())
     if (!*need.value) return std::string("no ") + need.name;
   if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) return "no VK_KHR_push_descriptor";
+  if (!subgroups_share(device)) return "no vote, ballot and shuffle in compute subgroups";
   if (find_queue_family(device) == UINT32_MAX) return "no queue that draws, computes and times";
   return {};
 }

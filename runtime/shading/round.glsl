@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a round's dispatches over the picture read: visibility.comp fills visibility textures, shade.comp adds light.
 #extension GL_EXT_shader_8bit_storage : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 #include "frame_schema.glsl"
 #include "pack_schema.glsl"
 #include "shading/surface.glsl"

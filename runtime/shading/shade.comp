@@ -34,17 +34,17 @@ vec3 unshadowed(uint number, Reflector r, vec3 geometric_normal, vec3 p) {
   return lights[number].radiant * (falloff * n_dot_l) * reflected;
 }
 
-float delivered_visibility(ShadowMap map, vec3 p, vec3 n, mat2x3 axes, uvec2 pixel) {
-  if (deliver_answer == DELIVER_INLINE) return visibility(map, p, n, axes);
+float delivered_visibility(ShadowMap map, Receiver receiver, uvec2 pixel) {
+  if (deliver_answer == DELIVER_INLINE) return visibility(map, receiver);
   uint place = visibility_place(map, pixel);
-  return place != NONE && in_range(map, p) ? float(uint(visibility_bytes[place])) / 255.0 : 0.0;
+  return place != NONE && in_range(map, receiver.p) ? float(uint(visibility_bytes[place])) / 255.0 : 0.0;
 }
 
 // Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked.
 vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
   Reflector r = reflector(s, normalize(view.eye_ws - p));
   if (shade_answer == SHADE_LAMBERT) r.diffuse = s.base_color / PI;
-  mat2x3 axes = receiver_axes(s.geometric_normal, vec2(pixel));
+  Receiver receiver = receiver_at(p, s.geometric_normal);
   vec3 sum = vec3(0.0);
   uint light = next_light(round.first_light);
   if (light < round.light_end) do {
@@ -55,8 +55,7 @@ vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
       of_map += unshadowed(light, r, s.geometric_normal, p);
       light = next_light(light + 1u);
     } while (light < map_end);
-    if (number != NONE && largest(of_map) > 0.0)
-      of_map *= delivered_visibility(maps[number], p, s.geometric_normal, axes, pixel);
+    if (number != NONE && subgroupAny(largest(of_map) > 0.0)) of_map *= delivered_visibility(maps[number], receiver, pixel);
     sum += of_map;
   } while (light < round.light_end);
   return sum;

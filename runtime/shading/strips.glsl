@@ -15,6 +15,12 @@ uvec2 square_of_group() {
   return uvec2(left + within % width, within / width);
 }
 
-uvec2 pixel_of_thread() { return square_of_group() * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy; }
+// Threads that follow each other share a square of 2 by 2 pixels, 4 by 2, 4 by 4 and 8 by 4: the bits of a thread's number
+// are one of x and one of y in turns.
+uvec2 pixel_of_thread() {
+  uvec2 bits = uvec2(gl_LocalInvocationIndex, gl_LocalInvocationIndex >> 1u);
+  uvec2 within = (bits & 1u) | (bits >> 1u & 2u) | (bits >> 2u & 4u);
+  return square_of_group() * gl_WorkGroupSize.xy + within;
+}
 
 #endif

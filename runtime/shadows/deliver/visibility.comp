@@ -18,13 +18,16 @@ void main() {
   if (depth == 0.0 || round.first_light == round.light_end) return;
   vec3 n = unpack_surface(texelFetch(surface_image, pixel, 0)).geometric_normal;
   vec3 p = world_position(view, vec2(pixel) + 0.5, depth);
-  mat2x3 axes = receiver_axes(n, vec2(pixel));
+  Receiver receiver = receiver_at(p, n);
   uint light = next_light(round.first_light);
   if (light < round.light_end) do {
     ShadowMap map = maps[lights[light].map];
     uint place = visibility_place(map, uvec2(pixel));
-    if (place != NONE && in_range(map, p))
-      visibility_bytes[place] = uint8_t(uint(visibility(map, p, n, axes) * 255.0 + 0.5));
+    bool reached = place != NONE && in_range(map, p);
+    if (subgroupAny(reached)) {
+      uint visible = uint(visibility(map, receiver) * 255.0 + 0.5);
+      if (reached) visibility_bytes[place] = uint8_t(visible);
+    }
     light = next_map(light);
   } while (light < round.light_end);
 }

@@ -14,33 +14,79 @@ float pcf_radius(ShadowMap map, vec3 p) {
   return max(SMOOTHING_TEXELS * texel_size(map, p), min(PENUMBRA_PER_RADIUS * map.filter_radius_m, 0.5 * distance(p, map.center_ws)));
 }
 
-// The part of the taps that is lit.
-float cube_pcf(CubeDisc disc, float radius_m) {
-  float lit = 0.0;
-  for (uint i = 0u; i < POISSON_TAPS; ++i) {
-    Tap tap = cube_tap(disc, radius_m * POISSON_DISC[i]);
-    lit += texture(cubes, vec4(tap.at, disc.cube), tap.compared);
-  }
-  return lit / float(POISSON_TAPS);
+// Pixels of a block share what they found nearer than this part of the disc's radius, and less up to twice as far.
+const float SHARE_RADII = 0.25;
+
+// What a pixel's own taps say.
+struct Lit {
+  float part;  // of the disc
+  vec3 slope;  // by how much more of it is lit a metre further on along the plane
+};
+
+// By Gauss' theorem the slope is 2 / radius times the mean, around the rim, of what is lit times the way from the centre. The
+// rings of the outer half stand for the rim; `of_rim` is what they add up to, each times its TURNS.
+const uint RIM_TAP = DISC_TAPS / 2u;
+Lit lit_disc(float lit_taps, vec2 of_rim, mat2x3 axes, float radius_m) {
+  vec2 even = vec2(0.0);  // what a disc adds up to that is evenly lit
+  for (uint i = RIM_TAP; i < DISC_TAPS; ++i) even += TURNS[i];
+  float part = lit_taps / float(DISC_TAPS);
+  return Lit(part, axes * ((of_rim - part * even) * (2.0 / (radius_m * float(DISC_TAPS - RIM_TAP)))));
 }
 
-float cascade_pcf(CascadeDisc disc, float radius_m) {
-  float lit = 0.0;
-  for (uint i = 0u; i < POISSON_TAPS; ++i) {
-    Tap tap = cascade_tap(disc, radius_m * POISSON_DISC[i]);
-    lit += texture(layers, vec4(tap.at, tap.compared));
+Lit cube_pcf(CubeDisc disc, float radius_m) {
+  float lit_taps = 0.0;
+  vec2 of_rim = vec2(0.0);
+  for (uint i = 0u; i < DISC_TAPS; ++i) {
+    Tap tap = cube_tap(disc, radius_m * disc_tap(i));
+    float lit = texture(cubes, vec4(tap.at, disc.cube), tap.compared);
+    lit_taps += lit;
+    if (i >= RIM_TAP) of_rim += lit * TURNS[i];
   }
-  return lit / float(POISSON_TAPS);
+  return lit_disc(lit_taps, of_rim, disc.axes, radius_m);
 }
 
-float pcf_visibility(ShadowMap map, vec3 p, vec3 n, mat2x3 axes) {
+Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m) {
+  float lit_taps = 0.0;
+  vec2 of_rim = vec2(0.0);
+  for (uint i = 0u; i < DISC_TAPS; ++i) {
+    Tap tap = cascade_tap(disc, radius_m * disc_tap(i));
+    float lit = texture(layers, vec4(tap.at, tap.compared));
+    lit_taps += lit;
+    if (i >= RIM_TAP) of_rim += lit * TURNS[i];
+  }
+  return lit_disc(lit_taps, of_rim, axes, radius_m);
+}
+
+// The lit part of a disc, from this pixel's taps and from those of its block's that lie nearer than half the radius. Theirs
+// are put right by how much changes on the way.
+float lit_of_block(Receiver r, Lit own, float radius_m) {
+  float weights = 1.0;
+  float part = own.part;
+  vec3 slope = own.slope;
+  vec3 away = vec3(0.0);
+  for (uint i = 1u; i < BLOCK_PIXELS; ++i) {
+    vec3 way = subgroupShuffleXor(r.p, i) - r.p;
+    float its_part = subgroupShuffleXor(own.part, i);
+    vec3 its_slope = subgroupShuffleXor(own.slope, i);
+    float weight = clamp(2.0 - length(way) / (SHARE_RADII * radius_m), 0.0, 1.0);
+    if ((r.mates >> i & 1u) != 0u && weight > 0.0) {  // what others say may be no number
+      weights += weight;
+      part += weight * its_part;
+      slope += weight * its_slope;
+      away += weight * way;
+    }
+  }
+  return clamp((part - dot(slope, away) / weights) / weights, 0.0, 1.0);
+}
+
+float pcf_visibility(ShadowMap map, Receiver r) {
   if (map.is_directional != 0u) {
-    ShadowView cascade = views[cascade_at(map, p)];
+    ShadowView cascade = views[cascade_at(map, r.p)];
     float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
-    return cascade_pcf(cascade_disc(cascade, p, n, axes), cascade_radius_m);
+    return lit_of_block(r, cascade_pcf(cascade_disc(cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m), cascade_radius_m);
   }
-  float radius_m = pcf_radius(map, p);
-  return cube_pcf(cube_disc(map, p, n, axes, radius_m), radius_m);
+  float radius_m = pcf_radius(map, r.p);
+  return lit_of_block(r, cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m), radius_m);
 }
 
 #endif

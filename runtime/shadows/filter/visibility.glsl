@@ -6,8 +6,9 @@
 
 const uint FILTER_HARD = 0u, FILTER_PCF = 1u, FILTER_PCSS = 2u;  // frame/recipe.h
 
-float visibility(ShadowMap map, vec3 p, vec3 n, mat2x3 axes) {
-  if (filter_answer == FILTER_PCF) return pcf_visibility(map, p, n, axes);
-  if (filter_answer == FILTER_PCSS) return pcss_visibility(map, p, n, axes);
-  return hard_visibility(map, p, n);
+// For all threads of a subgroup that have something to shade, at once.
+float visibility(ShadowMap map, Receiver r) {
+  if (filter_answer == FILTER_PCF) return pcf_visibility(map, r);
+  if (filter_answer == FILTER_PCSS) return pcss_visibility(map, r);
+  return hard_visibility(map, r.p, r.n);
 }
