@@ -14,7 +14,7 @@ namespace chandelier {
 namespace {
 
 // Numbers of shadows/filter/receiver_disc.glsl and pcf.glsl.
-constexpr std::array<glm::vec2, frame::disc_taps> poisson_disc{{{0.000f, 0.000f},
+constexpr std::array<glm::vec2, frame::poisson_taps> poisson_disc{{{0.000f, 0.000f},
                                                                    {-0.092f, -0.905f},
                                                                    {-0.698f, 0.252f},
                                                                    {0.719f, -0.070f},
@@ -67,7 +67,7 @@ glm::vec3 tap_place(const Receiver& receiver, const glm::vec2& at_m) {
 float pcf(const LightSamples& samples, uint32_t center, const Receiver& receiver, float radius_m) {
   uint32_t lit = 0;
   for (const glm::vec2& tap : poisson_disc) lit += samples.is_lit(center, tap_place(receiver, radius_m * tap)) ? 1 : 0;
-  return static_cast<float>(lit) / frame::disc_taps;
+  return static_cast<float>(lit) / frame::poisson_taps;
 }
 
 // pcss.glsl:cube_pcss
@@ -82,7 +82,7 @@ float pcss(const LightSamples& samples, uint32_t center, const Receiver& receive
     ++count;
     sum += at;
   }
-  if (count == 0 || count == frame::disc_taps) return count == 0 ? 1.0f : 0.0f;
+  if (count == 0 || count == frame::poisson_taps) return count == 0 ? 1.0f : 0.0f;
   const float mean = sum / static_cast<float>(count);
   return pcf(samples, center, receiver, glm::clamp(light_m * (1.0f - mean) / mean, smoothing_m, search_m));
 }

@@ -59,17 +59,17 @@ Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m) {
 
 // The lit part of a disc, from this pixel's taps and from those of its block's that lie nearer than half the radius. Theirs
 // are put right by how much changes on the way.
-float lit_of_block(Receiver r, Lit own, float radius_m) {
+float lit_of_block(vec3 p, uint mates, Lit own, float radius_m) {
   float weights = 1.0;
   float part = own.part;
   vec3 slope = own.slope;
   vec3 away = vec3(0.0);
   for (uint i = 1u; i < BLOCK_PIXELS; ++i) {
-    vec3 way = subgroupShuffleXor(r.p, i) - r.p;
+    vec3 way = subgroupShuffleXor(p, i) - p;
     float its_part = subgroupShuffleXor(own.part, i);
     vec3 its_slope = subgroupShuffleXor(own.slope, i);
     float weight = clamp(2.0 - length(way) / (SHARE_RADII * radius_m), 0.0, 1.0);
-    if ((r.mates >> i & 1u) != 0u && weight > 0.0) {  // what others say may be no number
+    if (has_bit(mates, block_place() ^ i) && weight > 0.0) {  // what others say may be no number
       weights += weight;
       part += weight * its_part;
       slope += weight * its_slope;
@@ -83,10 +83,12 @@ float pcf_visibility(ShadowMap map, Receiver r) {
   if (map.is_directional != 0u) {
     ShadowView cascade = views[cascade_at(map, r.p)];
     float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
-    return lit_of_block(r, cascade_pcf(cascade_disc(cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m), cascade_radius_m);
+    Lit own = cascade_pcf(cascade_disc(cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m);
+    return lit_of_block(r.p, facing_mates(r, depth_per_m(cascade)), own, cascade_radius_m);
   }
   float radius_m = pcf_radius(map, r.p);
-  return lit_of_block(r, cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m), radius_m);
+  Lit own = cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m);
+  return lit_of_block(r.p, facing_mates(r, map.center_ws - r.p), own, radius_m);
 }
 
 #endif

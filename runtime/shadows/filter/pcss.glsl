@@ -39,13 +39,13 @@ Blockers cascade_blockers(CascadeDisc disc, float search_m) {
 }
 
 // This pixel's blockers and those of its block's that searched nearly the same disc.
-Blockers blockers_of_block(Receiver r, Blockers own, float search_m) {
+Blockers blockers_of_block(vec3 p, uint mates, Blockers own, float search_m) {
   Blockers found = own;
   for (uint i = 1u; i < BLOCK_PIXELS; ++i) {
-    vec3 way = subgroupShuffleXor(r.p, i) - r.p;
+    vec3 way = subgroupShuffleXor(p, i) - p;
     uint its_count = subgroupShuffleXor(own.count, i);
     float its_sum = subgroupShuffleXor(own.sum, i);
-    if ((r.mates >> i & 1u) != 0u && length(way) <= SHARE_RADII * search_m) {
+    if (has_bit(mates, block_place() ^ i) && length(way) <= SHARE_RADII * search_m) {
       found.count += its_count;
       found.sum += its_sum;
       found.taps += DISC_TAPS;
@@ -54,6 +54,17 @@ Blockers blockers_of_block(Receiver r, Blockers own, float search_m) {
   return found;
 }
 
+float mean_blocker(Blockers found) { return max(found.sum / float(max(found.count, 1u)), 1e-6); }
+
+// A light without a radius needs no search.
+struct Search {
+  bool made;
+  Blockers blockers;
+};
+
+bool all_lit(Search found) { return found.made && found.blockers.count == 0u; }
+bool all_dark(Search found) { return found.made && found.blockers.count == found.blockers.taps; }
+
 // The light's edge as a blocker at the part t of the way casts it on the plane lies R * (1 - t) / t from the centre's
 // (similar triangles). The search disc is where blockers half way cast it; wider penumbrae are cut off there. Where all
 // taps of the search are blocked, so are those of the narrower disc within, but for what lies between the taps.
@@ -61,18 +72,19 @@ float cube_pcss(ShadowMap map, Receiver r) {
   float smoothing_m = SMOOTHING_TEXELS * texel_size(map, r.p);
   float search_m = max(smoothing_m, min(map.filter_radius_m, 0.5 * distance(r.p, map.center_ws)));
   CubeDisc disc = cube_disc(map, r.p, r.n, r.axes, search_m);
-  bool searches = search_m > smoothing_m;
-  Blockers found = Blockers(0u, 0.0, 0u);
-  if (subgroupAny(searches)) found = blockers_of_block(r, cube_blockers(disc, search_m), search_m);
-  bool all_lit = searches && found.count == 0u, all_dark = searches && found.count == found.taps;
-  float visible = all_lit ? 1.0 : 0.0;
-  if (subgroupAny(!(all_lit || all_dark))) {
-    float mean = max(found.sum / float(max(found.count, 1u)), 1e-6);
-    float radius_m = searches ? clamp(map.filter_radius_m * (1.0 - mean) / mean, smoothing_m, search_m) : smoothing_m;
-    Lit own = cube_pcf(disc, radius_m);
-    if (all_lit || all_dark) own = Lit(visible, vec3(0.0));
-    float of_block = lit_of_block(r, own, radius_m);
-    if (!all_lit && !all_dark) visible = of_block;
+  uint mates = facing_mates(r, map.center_ws - r.p);
+  Search found = Search(search_m > smoothing_m, Blockers(0u, 0.0, 0u));
+  if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, cube_blockers(disc, search_m), search_m);
+  float visible = all_lit(found) ? 1.0 : 0.0;
+  bool soft = !all_lit(found) && !all_dark(found);
+  if (subgroupAny(soft)) {
+    float t = mean_blocker(found.blockers);
+    float radius_m = found.made ? clamp(map.filter_radius_m * (1.0 - t) / t, smoothing_m, search_m) : smoothing_m;
+    Lit own = Lit(visible, vec3(0.0));
+    Lit by_taps = cube_pcf(disc, radius_m);
+    if (soft) own = by_taps;
+    float of_block = lit_of_block(r.p, mates, own, radius_m);
+    if (soft) visible = of_block;
   }
   return visible;
 }
@@ -81,21 +93,20 @@ float cube_pcss(ShadowMap map, Receiver r) {
 float cascade_pcss(ShadowView cascade, float light_radius_m, Receiver r) {
   float smoothing_m = SMOOTHING_TEXELS * cascade.texel_m;
   CascadeDisc disc = cascade_disc(cascade, r.p, r.n, r.axes);
-  vec3 depth_per_m = vec3(cascade.clip_from_world[0].z, cascade.clip_from_world[1].z, cascade.clip_from_world[2].z);
-  float spread_m = light_radius_m / (view.z_far_m * length(depth_per_m));  // over the whole depth
+  float spread_m = light_radius_m / (view.z_far_m * length(depth_per_m(cascade)));  // over the whole depth
   float search_m = max(smoothing_m, spread_m * (1.0 - disc.receiver.z));
-  bool searches = search_m > smoothing_m;
-  Blockers found = Blockers(0u, 0.0, 0u);
-  if (subgroupAny(searches)) found = blockers_of_block(r, cascade_blockers(disc, search_m), search_m);
-  bool all_lit = searches && found.count == 0u, all_dark = searches && found.count == found.taps;
-  float visible = all_lit ? 1.0 : 0.0;
-  if (subgroupAny(!(all_lit || all_dark))) {
-    float mean = found.sum / float(max(found.count, 1u));
-    float radius_m = searches ? clamp(spread_m * mean, smoothing_m, search_m) : smoothing_m;
-    Lit own = cascade_pcf(disc, r.axes, radius_m);
-    if (all_lit || all_dark) own = Lit(visible, vec3(0.0));
-    float of_block = lit_of_block(r, own, radius_m);
-    if (!all_lit && !all_dark) visible = of_block;
+  uint mates = facing_mates(r, depth_per_m(cascade));
+  Search found = Search(search_m > smoothing_m, Blockers(0u, 0.0, 0u));
+  if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, cascade_blockers(disc, search_m), search_m);
+  float visible = all_lit(found) ? 1.0 : 0.0;
+  bool soft = !all_lit(found) && !all_dark(found);
+  if (subgroupAny(soft)) {
+    float radius_m = found.made ? clamp(spread_m * mean_blocker(found.blockers), smoothing_m, search_m) : smoothing_m;
+    Lit own = Lit(visible, vec3(0.0));
+    Lit by_taps = cascade_pcf(disc, r.axes, radius_m);
+    if (soft) own = by_taps;
+    float of_block = lit_of_block(r.p, mates, own, radius_m);
+    if (soft) visible = of_block;
   }
   return visible;
 }

@@ -8,6 +8,8 @@
 const float SMOOTHING_TEXELS = 1.5;  // least radius: hides the staircase of a single light's map
 const float RAISE_TEXELS = 1.5;      // bilinear comparison reads texels whose centres are up to a diagonal away
 
+const uint DISC_TAPS = POISSON_TAPS;
+
 // A pixel's taps lie in rings of equal area, one in each, 149 degrees further on from ring to ring. In the block's next pixel
 // all are 45 degrees further on, at another of eight radii within their rings. So a pixel's taps are about even over the disc,
 // and the 64 of a block err as little as 64 of a golden spiral: over straight edges 0.009, and a pixel's own 0.057. Turns of
@@ -40,6 +42,13 @@ struct Receiver {
 };
 
 Receiver receiver_at(vec3 p, vec3 n) { return Receiver(p, n, receiver_axes(n), block_mates(p, n)); }
+
+// The mates that face the light as this pixel does, `to_light` along the light's way: a plane that turns its back on it is dark.
+uint facing_mates(Receiver r, vec3 to_light) {
+  bool faces = dot(r.n, to_light) > 0.0;
+  uint facing = block_ballot(faces);
+  return faces ? r.mates & facing : 0u;
+}
 
 // A receiver's plane as the centre of a cube sees it.
 struct CubeDisc {

@@ -49,6 +49,11 @@ uint cascade_at(ShadowMap map, vec3 p) {
 // A cascade's depth is even over the whole scene: rounding is a few units of the 24th bit of its range.
 const float CASCADE_ROUNDING = 2e-6;
 
+// How much a cascade's depth grows a metre farther on along each axis: it points towards the light.
+vec3 depth_per_m(ShadowView cascade) {
+  return vec3(cascade.clip_from_world[0].z, cascade.clip_from_world[1].z, cascade.clip_from_world[2].z);
+}
+
 // Is p lit in this cascade?
 float cascade_lit(ShadowView cascade, vec3 p) {
   vec4 clip = mat4(cascade.clip_from_world[0], cascade.clip_from_world[1], cascade.clip_from_world[2],
