@@ -23,38 +23,55 @@ struct Lit {
   vec3 slope;  // by how much more of it is lit a metre further on along the plane
 };
 
-// By Gauss' theorem the slope is 2 / radius times the mean, around the rim, of what is lit times the way from the centre. The
-// rings of the outer half stand for the rim; `of_rim` is what they add up to, each times its TURNS.
-const uint RIM_TAP = DISC_TAPS / 2u;
-Lit lit_disc(float lit_taps, vec2 of_rim, mat2x3 axes, float radius_m) {
-  vec2 even = vec2(0.0);  // what a disc adds up to that is evenly lit
-  for (uint i = RIM_TAP; i < DISC_TAPS; ++i) even += TURNS[i];
-  float part = lit_taps / float(DISC_TAPS);
-  return Lit(part, axes * ((of_rim - part * even) * (2.0 / (radius_m * float(DISC_TAPS - RIM_TAP)))));
+// What taps add up to, and its slope. By Gauss' theorem that is 2 / radius times the mean, around the rim, of what is lit times
+// the way from the centre. The rings of the outer half stand for the rim.
+const uint RIM_TAP = FILTER_TAPS / 2u;
+struct TapSums {
+  float lit;
+  vec2 rim;      // each tap's way from the centre, unit length
+  vec2 lit_rim;  // times what is lit of it
+};
+
+void add_tap(inout TapSums sums, float lit, vec2 turn, bool at_rim) {
+  sums.lit += lit;
+  if (at_rim) {
+    sums.rim += turn;
+    sums.lit_rim += lit * turn;
+  }
 }
 
-Lit cube_pcf(CubeDisc disc, float radius_m) {
-  float lit_taps = 0.0;
-  vec2 of_rim = vec2(0.0);
-  for (uint i = 0u; i < DISC_TAPS; ++i) {
-    Tap tap = cube_tap(disc, radius_m * disc_tap(i));
-    float lit = texture(cubes, vec4(tap.at, disc.cube), tap.compared);
-    lit_taps += lit;
-    if (i >= RIM_TAP) of_rim += lit * TURNS[i];
-  }
-  return lit_disc(lit_taps, of_rim, disc.axes, radius_m);
+Lit lit_disc(TapSums sums, mat2x3 axes, float radius_m) {
+  float part = sums.lit / float(FILTER_TAPS);
+  return Lit(part, axes * ((sums.lit_rim - part * sums.rim) * (2.0 / (radius_m * float(FILTER_TAPS - RIM_TAP)))));
 }
 
-Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m) {
-  float lit_taps = 0.0;
-  vec2 of_rim = vec2(0.0);
-  for (uint i = 0u; i < DISC_TAPS; ++i) {
-    Tap tap = cascade_tap(disc, radius_m * disc_tap(i));
-    float lit = texture(layers, vec4(tap.at, tap.compared));
-    lit_taps += lit;
-    if (i >= RIM_TAP) of_rim += lit * TURNS[i];
-  }
-  return lit_disc(lit_taps, of_rim, axes, radius_m);
+// Where `wanted` is not, four taps are read, since loops run at least once (shading/shade.comp), and the result is of no use.
+Lit cube_pcf(CubeDisc disc, float radius_m, bool wanted) {
+  TapSums sums = TapSums(0.0, vec2(0.0), vec2(0.0));
+  vec2 turn = vec2(1.0, 0.0);
+  uint i = 0u;
+  do {
+    for (uint k = 0u; k < 4u; ++k, ++i) {
+      Tap tap = cube_tap(disc, radius_m * tap_ring(i, FILTER_TAPS) * turn);
+      add_tap(sums, texture(cubes, vec4(tap.at, disc.cube), tap.compared), turn, i >= RIM_TAP);
+      turn = NEXT_TURN * turn;
+    }
+  } while (wanted && i < FILTER_TAPS);
+  return lit_disc(sums, disc.axes, radius_m);
+}
+
+Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m, bool wanted) {
+  TapSums sums = TapSums(0.0, vec2(0.0), vec2(0.0));
+  vec2 turn = vec2(1.0, 0.0);
+  uint i = 0u;
+  do {
+    for (uint k = 0u; k < 4u; ++k, ++i) {
+      Tap tap = cascade_tap(disc, radius_m * tap_ring(i, FILTER_TAPS) * turn);
+      add_tap(sums, texture(layers, vec4(tap.at, tap.compared)), turn, i >= RIM_TAP);
+      turn = NEXT_TURN * turn;
+    }
+  } while (wanted && i < FILTER_TAPS);
+  return lit_disc(sums, axes, radius_m);
 }
 
 // The lit part of a disc, from this pixel's taps and from those of its block's that lie nearer than half the radius. Theirs
@@ -83,11 +100,11 @@ float pcf_visibility(ShadowMap map, Receiver r) {
   if (map.is_directional != 0u) {
     ShadowView cascade = views[cascade_at(map, r.p)];
     float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
-    Lit own = cascade_pcf(cascade_disc(cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m);
+    Lit own = cascade_pcf(cascade_disc(cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m, true);
     return lit_of_block(r.p, facing_mates(r, depth_per_m(cascade)), own, cascade_radius_m);
   }
   float radius_m = pcf_radius(map, r.p);
-  Lit own = cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m);
+  Lit own = cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m, true);
   return lit_of_block(r.p, facing_mates(r, map.center_ws - r.p), own, radius_m);
 }
 

@@ -14,28 +14,32 @@ struct Blockers {
 Blockers cube_blockers(CubeDisc disc, float search_m) {
   uint count = 0u;
   float sum = 0.0;
-  for (uint i = 0u; i < DISC_TAPS; ++i) {
-    Tap tap = cube_tap(disc, search_m * disc_tap(i));
+  vec2 turn = vec2(1.0, 0.0);
+  for (uint i = 0u; i < SEARCH_TAPS; ++i) {
+    Tap tap = cube_tap(disc, search_m * tap_ring(i, SEARCH_TAPS) * turn);
+    turn = NEXT_TURN * turn;
     float blocker = textureLod(cube_depths, vec4(tap.at, disc.cube), 0.0).r;
     bool blocks = blocker > tap.compared;
     count += blocks ? 1u : 0u;
     sum += blocks ? tap.depth / blocker : 0.0;
   }
-  return Blockers(count, sum, DISC_TAPS);
+  return Blockers(count, sum, SEARCH_TAPS);
 }
 
 // A blocker: its distance from the plane along the light's way, of the cascade's whole depth.
 Blockers cascade_blockers(CascadeDisc disc, float search_m) {
   uint count = 0u;
   float sum = 0.0;
-  for (uint i = 0u; i < DISC_TAPS; ++i) {
-    Tap tap = cascade_tap(disc, search_m * disc_tap(i));
+  vec2 turn = vec2(1.0, 0.0);
+  for (uint i = 0u; i < SEARCH_TAPS; ++i) {
+    Tap tap = cascade_tap(disc, search_m * tap_ring(i, SEARCH_TAPS) * turn);
+    turn = NEXT_TURN * turn;
     float blocker = textureLod(layer_depths, tap.at, 0.0).r;
     bool blocks = blocker > tap.compared;
     count += blocks ? 1u : 0u;
     sum += blocks ? blocker - tap.depth : 0.0;
   }
-  return Blockers(count, sum, DISC_TAPS);
+  return Blockers(count, sum, SEARCH_TAPS);
 }
 
 // This pixel's blockers and those of its block's that searched nearly the same disc.
@@ -48,7 +52,7 @@ Blockers blockers_of_block(vec3 p, uint mates, Blockers own, float search_m) {
     if (has_bit(mates, block_place() ^ i) && length(way) <= SHARE_RADII * search_m) {
       found.count += its_count;
       found.sum += its_sum;
-      found.taps += DISC_TAPS;
+      found.taps += SEARCH_TAPS;
     }
   }
   return found;
@@ -81,7 +85,7 @@ float cube_pcss(ShadowMap map, Receiver r) {
     float t = mean_blocker(found.blockers);
     float radius_m = found.made ? clamp(map.filter_radius_m * (1.0 - t) / t, smoothing_m, search_m) : smoothing_m;
     Lit own = Lit(visible, vec3(0.0));
-    Lit by_taps = cube_pcf(disc, radius_m);
+    Lit by_taps = cube_pcf(disc, radius_m, soft);
     if (soft) own = by_taps;
     float of_block = lit_of_block(r.p, mates, own, radius_m);
     if (soft) visible = of_block;
@@ -103,7 +107,7 @@ float cascade_pcss(ShadowView cascade, float light_radius_m, Receiver r) {
   if (subgroupAny(soft)) {
     float radius_m = found.made ? clamp(spread_m * mean_blocker(found.blockers), smoothing_m, search_m) : smoothing_m;
     Lit own = Lit(visible, vec3(0.0));
-    Lit by_taps = cascade_pcf(disc, r.axes, radius_m);
+    Lit by_taps = cascade_pcf(disc, r.axes, radius_m, soft);
     if (soft) own = by_taps;
     float of_block = lit_of_block(r.p, mates, own, radius_m);
     if (soft) visible = of_block;
