@@ -43,11 +43,12 @@ struct Receiver {
 
 Receiver receiver_at(vec3 p, vec3 n) { return Receiver(p, n, receiver_axes(n), block_mates(p, n)); }
 
-// The mates that face the light as this pixel does, `to_light` along the light's way: a plane that turns its back on it is dark.
+// The mates that face the light or turn their backs on it as this pixel does: a plane that does is dark where a bent surface is
+// lit. The lights of a cluster may reach what is turned away from the one that its map is drawn from.
 uint facing_mates(Receiver r, vec3 to_light) {
   bool faces = dot(r.n, to_light) > 0.0;
   uint facing = block_ballot(faces);
-  return faces ? r.mates & facing : 0u;
+  return r.mates & (faces ? facing : ~facing);
 }
 
 // A receiver's plane as the centre of a cube sees it.
