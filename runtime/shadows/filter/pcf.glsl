@@ -23,12 +23,9 @@ struct Lit {
   vec3 slope;  // by how much more of it is lit a metre further on along the plane
 };
 
-// What taps add up to, and its slope. By Gauss' theorem that is 2 / radius times the mean, around the rim, of what is lit times
-// the way from the centre. The rings of the outer half stand for the rim.
-const uint RIM_TAP = FILTER_TAPS / 2u;
 struct TapSums {
   float lit;
-  vec2 rim;      // each tap's way from the centre, unit length
+  vec2 rim;      // of the outer half: each tap's way from the centre, unit length
   vec2 lit_rim;  // times what is lit of it
 };
 
@@ -40,38 +37,40 @@ void add_tap(inout TapSums sums, float lit, vec2 turn, bool at_rim) {
   }
 }
 
-Lit lit_disc(TapSums sums, mat2x3 axes, float radius_m) {
-  float part = sums.lit / float(FILTER_TAPS);
-  return Lit(part, axes * ((sums.lit_rim - part * sums.rim) * (2.0 / (radius_m * float(FILTER_TAPS - RIM_TAP)))));
+// By Gauss' theorem the slope is 2 / radius times the mean, around the rim, of what is lit times the way from the centre. The
+// rings of the outer half stand for the rim.
+Lit lit_disc(TapSums sums, uint taps, mat2x3 axes, float radius_m) {
+  float part = sums.lit / float(taps);
+  return Lit(part, axes * ((sums.lit_rim - part * sums.rim) * (4.0 / (radius_m * float(taps)))));
 }
 
-// Where `wanted` is not, four taps are read, since loops run at least once (shading/shade.comp), and the result is of no use.
-Lit cube_pcf(CubeDisc disc, float radius_m, bool wanted) {
+// Of so many taps, a multiple of four.
+Lit cube_pcf(CubeDisc disc, float radius_m, uint taps) {
   TapSums sums = TapSums(0.0, vec2(0.0), vec2(0.0));
   vec2 turn = vec2(1.0, 0.0);
   uint i = 0u;
   do {
     for (uint k = 0u; k < 4u; ++k, ++i) {
-      Tap tap = cube_tap(disc, radius_m * tap_ring(i, FILTER_TAPS) * turn);
-      add_tap(sums, texture(cubes, vec4(tap.at, disc.cube), tap.compared), turn, i >= RIM_TAP);
+      Tap tap = cube_tap(disc, radius_m * tap_ring(i, taps) * turn);
+      add_tap(sums, texture(cubes, vec4(tap.at, disc.cube), tap.compared), turn, 2u * i >= taps);
       turn = NEXT_TURN * turn;
     }
-  } while (wanted && i < FILTER_TAPS);
-  return lit_disc(sums, disc.axes, radius_m);
+  } while (i < taps);
+  return lit_disc(sums, taps, disc.axes, radius_m);
 }
 
-Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m, bool wanted) {
+Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m, uint taps) {
   TapSums sums = TapSums(0.0, vec2(0.0), vec2(0.0));
   vec2 turn = vec2(1.0, 0.0);
   uint i = 0u;
   do {
     for (uint k = 0u; k < 4u; ++k, ++i) {
-      Tap tap = cascade_tap(disc, radius_m * tap_ring(i, FILTER_TAPS) * turn);
-      add_tap(sums, texture(layers, vec4(tap.at, tap.compared)), turn, i >= RIM_TAP);
+      Tap tap = cascade_tap(disc, radius_m * tap_ring(i, taps) * turn);
+      add_tap(sums, texture(layers, vec4(tap.at, tap.compared)), turn, 2u * i >= taps);
       turn = NEXT_TURN * turn;
     }
-  } while (wanted && i < FILTER_TAPS);
-  return lit_disc(sums, axes, radius_m);
+  } while (i < taps);
+  return lit_disc(sums, taps, axes, radius_m);
 }
 
 // The lit part of a disc, from this pixel's taps and from those of its block's that lie nearer than half the radius. Theirs
@@ -100,11 +99,11 @@ float pcf_visibility(ShadowMap map, Receiver r) {
   if (map.is_directional != 0u) {
     ShadowView cascade = views[cascade_at(map, r.p)];
     float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
-    Lit own = cascade_pcf(cascade_disc(cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m, true);
+    Lit own = cascade_pcf(cascade_disc(cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m, DISC_TAPS);
     return lit_of_block(r.p, facing_mates(r, depth_per_m(cascade)), own, cascade_radius_m);
   }
   float radius_m = pcf_radius(map, r.p);
-  Lit own = cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m, true);
+  Lit own = cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m, DISC_TAPS);
   return lit_of_block(r.p, facing_mates(r, map.center_ws - r.p), own, radius_m);
 }
 

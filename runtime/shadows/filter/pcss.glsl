@@ -15,15 +15,15 @@ Blockers cube_blockers(CubeDisc disc, float search_m) {
   uint count = 0u;
   float sum = 0.0;
   vec2 turn = vec2(1.0, 0.0);
-  for (uint i = 0u; i < SEARCH_TAPS; ++i) {
-    Tap tap = cube_tap(disc, search_m * tap_ring(i, SEARCH_TAPS) * turn);
+  for (uint i = 0u; i < DISC_TAPS; ++i) {
+    Tap tap = cube_tap(disc, search_m * tap_ring(i, DISC_TAPS) * turn);
     turn = NEXT_TURN * turn;
     float blocker = textureLod(cube_depths, vec4(tap.at, disc.cube), 0.0).r;
     bool blocks = blocker > tap.compared;
     count += blocks ? 1u : 0u;
     sum += blocks ? tap.depth / blocker : 0.0;
   }
-  return Blockers(count, sum, SEARCH_TAPS);
+  return Blockers(count, sum, DISC_TAPS);
 }
 
 // A blocker: its distance from the plane along the light's way, of the cascade's whole depth.
@@ -31,15 +31,15 @@ Blockers cascade_blockers(CascadeDisc disc, float search_m) {
   uint count = 0u;
   float sum = 0.0;
   vec2 turn = vec2(1.0, 0.0);
-  for (uint i = 0u; i < SEARCH_TAPS; ++i) {
-    Tap tap = cascade_tap(disc, search_m * tap_ring(i, SEARCH_TAPS) * turn);
+  for (uint i = 0u; i < DISC_TAPS; ++i) {
+    Tap tap = cascade_tap(disc, search_m * tap_ring(i, DISC_TAPS) * turn);
     turn = NEXT_TURN * turn;
     float blocker = textureLod(layer_depths, tap.at, 0.0).r;
     bool blocks = blocker > tap.compared;
     count += blocks ? 1u : 0u;
     sum += blocks ? blocker - tap.depth : 0.0;
   }
-  return Blockers(count, sum, SEARCH_TAPS);
+  return Blockers(count, sum, DISC_TAPS);
 }
 
 // This pixel's blockers and those of its block's that searched nearly the same disc.
@@ -52,7 +52,7 @@ Blockers blockers_of_block(vec3 p, uint mates, Blockers own, float search_m) {
     if (has_bit(mates, block_place() ^ i) && length(way) <= SHARE_RADII * search_m) {
       found.count += its_count;
       found.sum += its_sum;
-      found.taps += SEARCH_TAPS;
+      found.taps += DISC_TAPS;
     }
   }
   return found;
@@ -68,6 +68,19 @@ struct Search {
 
 bool all_lit(Search found) { return found.made && found.blockers.count == 0u; }
 bool all_dark(Search found) { return found.made && found.blockers.count == found.blockers.taps; }
+bool asks_taps(Search found) { return !all_lit(found) && !all_dark(found); }
+
+// Most where there is a penumbra; no fewer than cube_pcf() can read where it is the block's other pixels that ask.
+const uint PENUMBRA_TAPS = 2u * DISC_TAPS;
+uint taps_after(Search found) { return !asks_taps(found) ? 4u : found.made ? PENUMBRA_TAPS : DISC_TAPS; }
+
+// `own` is what the taps say; where the search said enough, that counts.
+float lit_after(Search found, Receiver r, uint mates, Lit own, float radius_m) {
+  float sure = all_lit(found) ? 1.0 : 0.0;
+  if (!asks_taps(found)) own = Lit(sure, vec3(0.0));
+  float of_block = lit_of_block(r.p, mates, own, radius_m);
+  return asks_taps(found) ? of_block : sure;
+}
 
 // The light's edge as a blocker at the part t of the way casts it on the plane lies R * (1 - t) / t from the centre's
 // (similar triangles). The search disc is where blockers half way cast it; wider penumbrae are cut off there. Where all
@@ -79,18 +92,10 @@ float cube_pcss(ShadowMap map, Receiver r) {
   uint mates = facing_mates(r, map.center_ws - r.p);
   Search found = Search(search_m > smoothing_m, Blockers(0u, 0.0, 0u));
   if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, cube_blockers(disc, search_m), search_m);
-  float visible = all_lit(found) ? 1.0 : 0.0;
-  bool soft = !all_lit(found) && !all_dark(found);
-  if (subgroupAny(soft)) {
-    float t = mean_blocker(found.blockers);
-    float radius_m = found.made ? clamp(map.filter_radius_m * (1.0 - t) / t, smoothing_m, search_m) : smoothing_m;
-    Lit own = Lit(visible, vec3(0.0));
-    Lit by_taps = cube_pcf(disc, radius_m, soft);
-    if (soft) own = by_taps;
-    float of_block = lit_of_block(r.p, mates, own, radius_m);
-    if (soft) visible = of_block;
-  }
-  return visible;
+  if (!subgroupAny(asks_taps(found))) return all_lit(found) ? 1.0 : 0.0;
+  float t = mean_blocker(found.blockers);
+  float radius_m = found.made ? clamp(map.filter_radius_m * (1.0 - t) / t, smoothing_m, search_m) : smoothing_m;
+  return lit_after(found, r, mates, cube_pcf(disc, radius_m, taps_after(found)), radius_m);
 }
 
 // A directional cluster's light stands at z_far. The search disc is what it casts from the cascade's near plane.
@@ -102,17 +107,9 @@ float cascade_pcss(ShadowView cascade, float light_radius_m, Receiver r) {
   uint mates = facing_mates(r, depth_per_m(cascade));
   Search found = Search(search_m > smoothing_m, Blockers(0u, 0.0, 0u));
   if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, cascade_blockers(disc, search_m), search_m);
-  float visible = all_lit(found) ? 1.0 : 0.0;
-  bool soft = !all_lit(found) && !all_dark(found);
-  if (subgroupAny(soft)) {
-    float radius_m = found.made ? clamp(spread_m * mean_blocker(found.blockers), smoothing_m, search_m) : smoothing_m;
-    Lit own = Lit(visible, vec3(0.0));
-    Lit by_taps = cascade_pcf(disc, r.axes, radius_m, soft);
-    if (soft) own = by_taps;
-    float of_block = lit_of_block(r.p, mates, own, radius_m);
-    if (soft) visible = of_block;
-  }
-  return visible;
+  if (!subgroupAny(asks_taps(found))) return all_lit(found) ? 1.0 : 0.0;
+  float radius_m = found.made ? clamp(spread_m * mean_blocker(found.blockers), smoothing_m, search_m) : smoothing_m;
+  return lit_after(found, r, mates, cascade_pcf(disc, r.axes, radius_m, taps_after(found)), radius_m);
 }
 
 float pcss_visibility(ShadowMap map, Receiver r) {

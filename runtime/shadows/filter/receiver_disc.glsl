@@ -8,12 +8,11 @@
 const float SMOOTHING_TEXELS = 1.5;  // least radius: hides the staircase of a single light's map
 const float RAISE_TEXELS = 1.5;      // bilinear comparison reads texels whose centres are up to a diagonal away
 
-const uint SEARCH_TAPS = POISSON_TAPS;
-const uint FILTER_TAPS = 16u;
+const uint DISC_TAPS = POISSON_TAPS;
 
 // A pixel's taps lie in rings of equal area, one in each, 152 degrees further on from ring to ring. In the block's next pixel
 // all are 45 degrees further on, at another of eight radii within their rings. So a pixel's taps are about even over the disc,
-// and those of a block as even as a golden spiral: over straight edges 128 taps err by 0.007, a pixel's own 16 by 0.036. Other
+// and those of a block as even as a golden spiral: over straight edges 64 taps err by 0.012, a pixel's own 8 by 0.058 (128 by 0.007, 16 by 0.036). Other
 // turns were tried: the golden angle's leave all taps on eight spokes.
 const mat2 NEXT_TURN = mat2(-0.882948, 0.469472, -0.469472, -0.882948);
 
@@ -24,8 +23,8 @@ float tap_ring(uint i, uint taps) {
   return sqrt((float(i) + (float(reversed) + 0.5) / float(BLOCK_PIXELS)) / float(taps));
 }
 
-// Two unit vectors that span the plane across n, turned by this pixel's part of a turn. At 13 degrees the block's taps err
-// least, by 0.005, where edges run along the world's axes, as most of a building's do.
+// Two unit vectors that span the plane across n, turned by this pixel's part of a turn. At 13 degrees the 128 taps of
+// a block err least, by 0.005, where edges run along the world's axes, as most of a building's do.
 mat2x3 receiver_axes(vec3 n) {
   vec3 t = normalize(abs(n.y) < 0.9 ? cross(n, vec3(0.0, 1.0, 0.0)) : cross(n, vec3(1.0, 0.0, 0.0)));
   vec3 b = cross(n, t);
