@@ -13,7 +13,7 @@
 namespace chandelier {
 namespace {
 
-// Numbers of shadows/filter/receiver_disc.glsl and pcf.glsl.
+// The point itself and seven darts in the unit disc: as few as a pixel reads, whose own lie elsewhere.
 constexpr std::array<glm::vec2, frame::poisson_taps> poisson_disc{{{0.000f, 0.000f},
                                                                    {-0.092f, -0.905f},
                                                                    {-0.698f, 0.252f},
@@ -22,6 +22,7 @@ constexpr std::array<glm::vec2, frame::poisson_taps> poisson_disc{{{0.000f, 0.00
                                                                    {-0.434f, -0.369f},
                                                                    {0.301f, -0.520f},
                                                                    {-0.165f, 0.666f}}};
+// Numbers of shadows/filter/receiver_disc.glsl and pcf.glsl.
 constexpr float smoothing_texels = 1.5f;
 constexpr float penumbra_per_radius = 0.27f;
 constexpr float raise_texels = 0.75f;  // more than the reference is raised: the rays need none for their own sake
