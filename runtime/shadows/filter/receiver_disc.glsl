@@ -12,8 +12,8 @@ const uint DISC_TAPS = POISSON_TAPS;
 
 // A pixel's taps lie in rings of equal area, one in each, 152 degrees further on from ring to ring. In the block's next pixel
 // all are 45 degrees further on, at another of eight radii within their rings. So a pixel's taps are about even over the disc,
-// and those of a block as even as a golden spiral: over straight edges 64 taps err by 0.012, a pixel's own 8 by 0.058 (128 by 0.007, 16 by 0.036). Other
-// turns were tried: the golden angle's leave all taps on eight spokes.
+// and those of a block as even as a golden spiral: over straight edges a pixel's own 8 err by 0.058 and the block's 64 by 0.012,
+// with 16 by 0.036 and 0.007. Other turns were tried: the golden angle's leave all taps on eight spokes.
 const mat2 NEXT_TURN = mat2(-0.882948, 0.469472, -0.469472, -0.882948);
 
 // How far out tap `i` is in the unit disc.
