@@ -124,7 +124,7 @@ enum class LightType { point, spot, directional };
 struct Light {
   std::string name;
   LightType type = LightType::point;
-  glm::vec3 position_ws{0};
+  glm::dvec3 position_ws{0};
   glm::vec3 direction_ws{0, 0, -1};
   glm::vec3 color{1};              // linear
   float intensity = 1;             // candela; lux for a directional light
@@ -144,7 +144,7 @@ struct Light {
 
 struct Camera {
   std::string name;
-  glm::vec3 position_ws{0};
+  glm::dvec3 position_ws{0};
   glm::vec3 forward_ws{0, 0, -1};
   glm::vec3 up_ws{0, 1, 0};
   float yfov_rad = 0.8f;
@@ -158,7 +158,7 @@ struct Node {
   std::string name;
   std::uint32_t parent = kNone;
   glm::dmat4 parent_from_local{1};
-  glm::vec3 translation{0};
+  glm::dvec3 translation{0};
   glm::vec4 rotation{0, 0, 0, 1};  // unit quaternion x, y, z, w
   glm::vec3 scale{1};
 };
@@ -202,6 +202,7 @@ struct Scene {
   std::vector<Node> nodes;
   std::vector<Animation> animations;
   std::vector<Skin> skins;
+  glm::dvec3 origin_m{0};  // where the world's origin lies in the files' coordinates
 };
 
 }  // namespace chandelier::baker

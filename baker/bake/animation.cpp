@@ -25,7 +25,7 @@ std::array<glm::vec4, 3> rows_of(const Matrix& matrix) {
 void add_node(const Node& node, Strings& strings, pack::Contents& pack) {
   pack::Node out;
   std::ranges::copy(rows_of(node.parent_from_local), std::begin(out.parent_from_local));
-  out.translation = node.translation;
+  out.translation = glm::vec3(node.translation);
   out.rotation = node.rotation;
   out.scale = node.scale;
   out.parent = node.parent;

@@ -17,6 +17,7 @@
 #include "lights.h"
 #include "mesh_passes.h"
 #include "pack_checks.h"
+#include "recentre.h"
 #include "stage_keys.h"
 #include "strings.h"
 #include "textures.h"
@@ -29,6 +30,7 @@ namespace {
 
 void describe(const Scene& scene, const BakeSettings& settings, Strings& strings, pack::Contents& pack) {
   pack::BakeInfo& info = pack.bake_info;
+  info.origin_m = scene.origin_m;
   info.batch_triangles = settings.batch_triangles;
   info.range_threshold_lx = settings.range_threshold_lx;
   info.unique_triangles = pack.indices.size() / 3;
@@ -105,6 +107,7 @@ pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress&
   Cache& kept = cache ? *cache : no_cache;
   pack::Contents pack;
   Strings strings(pack.strings);
+  report.run("recentre", [&](PassReport& pass) { recentre(scene, pass, warnings); });
   std::vector<ImageRequest> requests;
   report.run("glass", [&](PassReport& pass) {
     find_glass(scene, settings.glass_shadows, settings.images.strict, pass, warnings);

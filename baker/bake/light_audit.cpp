@@ -11,7 +11,7 @@
 #include <numeric>
 #include <optional>
 
-#include "frame_schema.h"
+#include "light_near.h"
 #include "light_rays.h"
 
 namespace chandelier::baker {
@@ -120,7 +120,7 @@ void audit_power(Audit& audit, const Numbers& placed) {
 std::optional<double> illuminance_lx(const pack::Contents& pack, const pack::Light& light) {
   std::vector<double> distances;
   for (const glm::dvec3& way : directions_of(light, kRays)) {
-    const double distance = cast_ray(pack, glm::dvec3(light.position_ws), way, frame::shadow_near_m).distance_m;
+    const double distance = cast_ray(pack, glm::dvec3(light.position_ws), way, pack::shadow_near_m(light)).distance_m;
     if (distance <= light.range_m) distances.push_back(distance);
   }
   if (distances.size() < kRays / 2) return std::nullopt;
@@ -213,7 +213,7 @@ bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
   const std::vector<glm::dvec3> ways = directions_of(light, kRays);
   int inside = 0, kept = 0;
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    const RayHit hit = cast_ray(pack, from, ways[i], frame::shadow_near_m);
+    const RayHit hit = cast_ray(pack, from, ways[i], pack::shadow_near_m(light));
     if (hit.shells_around > 0) ++inside;
     if (i == 1 && inside == 0) return false;  // two rays agree that it stands free
     if (hit.closed_back && hit.distance_m <= light.range_m && (!hit.double_sided || hit.distance_m < kFixture_m)) {
@@ -221,6 +221,23 @@ bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
     }
   }
   return inside > kRays / 2 && kept > kRays / 2;
+}
+
+/// Lights whose shadow maps miss what is nearest to them: a shade, or a wall that they stand in.
+void audit_touching(Audit& audit, const Numbers& placed) {
+  constexpr double kLeast_m = pack::least_shadow_near_m / pack::shadow_near_per_distance;
+  Numbers touching;
+  for (const std::size_t i : placed) {
+    pack::Light close = audit.baked(i);
+    if (close.shadowless || close.dynamic || !(close.nearest_caster_m < kLeast_m)) continue;
+    close.range_m = static_cast<float>(kLeast_m);
+    close.bounds_center_ws = close.position_ws;
+    close.bounds_radius_m = close.range_m;
+    if (reaches_anything(audit.pack, close)) touching.push_back(i);  // so it is in the cone
+  }
+  audit.name("touching_a_surface",
+             fmt::format("within {:.2g} mm of a surface, which may throw no shadow of their light", 1000 * kLeast_m),
+             touching);
 }
 
 void audit_places(Audit& audit, const Numbers& placed) {
@@ -278,6 +295,7 @@ void audit_lights(const Scene& scene, const pack::Contents& pack, PassReport& pa
   audit_defaults(audit, placed);
   audit_units(audit, placed);
   audit_places(audit, placed);
+  audit_touching(audit, placed);
   audit_groups(audit);
 }
 

@@ -185,6 +185,54 @@ std::vector<glm::dvec3> directions_of(const pack::Light& light, int count) {
   return out;
 }
 
+namespace {
+
+bool casts(const pack::Contents& pack, const pack::BatchInstance& draw) {
+  return pack.instances[draw.instance].shadowless == 0 &&
+         pack.materials[pack.batches[draw.batch].material].shadowless == 0;
+}
+
+/// From the point to the farthest of the box, beyond which no triangle in it can be.
+double farthest_of_box(const glm::dvec3& point, const glm::vec3& low, const glm::vec3& high) {
+  return glm::length(glm::max(glm::abs(point - glm::dvec3(low)), glm::abs(point - glm::dvec3(high))));
+}
+
+/// Calls visit(batch instance) for those that throw a shadow, moving ones where they rest, and whose boxes are not
+/// farther away than `nearest`, which it may lessen.
+template <typename Visit>
+void visit_casters_near(const pack::Contents& pack, const glm::dvec3& point, const double& nearest, Visit visit) {
+  const auto meets = [&](const glm::vec3& low, const glm::vec3& high) {
+    return is_near_box(point, nearest, low, high);
+  };
+  const auto visit_caster = [&](const pack::BatchInstance& draw) {
+    if (casts(pack, draw)) visit(draw);
+    return false;
+  };
+  visit_batches(pack, meets, visit_caster);
+  for (const pack::BatchInstance& draw : pack.batch_instances) {
+    if (pack.instances[draw.instance].dynamic == 1 && meets(draw.bounds_min_ws, draw.bounds_max_ws)) visit_caster(draw);
+  }
+}
+
+}  // namespace
+
+double nearest_caster_m(const pack::Contents& pack, const glm::dvec3& at, double most_m) {
+  double nearest = most_m;
+  visit_casters_near(pack, at, nearest, [&](const pack::BatchInstance& draw) {  // so that few triangles are looked at
+    nearest = std::min(nearest, farthest_of_box(at, draw.bounds_min_ws, draw.bounds_max_ws));
+  });
+  visit_casters_near(pack, at, nearest, [&](const pack::BatchInstance& draw) {
+    const pack::Batch& batch = pack.batches[draw.batch];
+    const glm::dmat4 world = world_from_local(pack.instances[draw.instance]);
+    for (std::uint32_t i = 0; i < batch.index_count; i += 3) {
+      Triangle triangle = triangle_ls(pack, batch.first_index + i);
+      for (glm::dvec3& corner : triangle) corner = glm::dvec3(world * glm::dvec4(corner, 1)) - at;
+      nearest = std::min(nearest, distance_to_triangle(triangle));
+    }
+  });
+  return nearest;
+}
+
 bool reaches_anything(const pack::Contents& pack, const pack::Light& light) {
   const glm::dvec3 at(light.position_ws), middle(light.bounds_center_ws), axis(light.direction_ws);
   const double range = light.range_m, cosine = light.type == pack::LightType::spot ? light.outer_cone_cos : -1;

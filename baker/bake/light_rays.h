@@ -24,6 +24,10 @@ RayHit cast_ray(const pack::Contents& pack, const glm::dvec3& from, const glm::d
 /// `count` directions, spread evenly over what a point or spot light shines into; always the same.
 std::vector<glm::dvec3> directions_of(const pack::Light& light, int count);
 
+/// How far the nearest triangle is that throws a shadow, wherever its cut-outs are, and where it rests if it moves;
+/// `most_m` where none is nearer.
+double nearest_caster_m(const pack::Contents& pack, const glm::dvec3& at, double most_m);
+
 /// Whether a triangle lies within a point or spot light's range and, maybe elsewhere, within its cone. So "no" is
 /// certain. Triangles that move count where they rest.
 bool reaches_anything(const pack::Contents& pack, const pack::Light& light);

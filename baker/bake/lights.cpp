@@ -2,12 +2,15 @@
 // Lights and cameras into their records.
 #include "lights.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <string>
 #include <unordered_map>
 
 #include "light_bounds.h"
 #include "light_range.h"
+#include "light_rays.h"
 #include "voxel_grid.h"
 
 namespace chandelier::baker {
@@ -26,13 +29,21 @@ class Groups {
   std::unordered_map<std::string, std::uint32_t> numbers_;
 };
 
+/// Rounded down, so that nothing is nearer.
+void measure_nearest(const pack::Contents& pack, pack::Light& light) {
+  if (light.type == pack::LightType::directional) return;
+  const double nearest = nearest_caster_m(pack, glm::dvec3(light.position_ws), light.range_m);
+  light.nearest_caster_m = static_cast<float>(nearest);
+  if (double{light.nearest_caster_m} > nearest) light.nearest_caster_m = std::nextafter(light.nearest_caster_m, 0.0f);
+}
+
 }  // namespace
 
 void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings, pack::Contents& pack) {
   Groups groups;
   for (const Light& light : scene.lights) {
     pack::Light out;
-    out.position_ws = light.position_ws;
+    out.position_ws = glm::vec3(light.position_ws);
     out.direction_ws = light.direction_ws;
     out.intensity = light.intensity;
     out.color = light.color;
@@ -45,7 +56,7 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     out.radius_m = light.radius_m;
     out.group = groups.number(light.group);
     out.node = light.node;
-    out.bounds_center_ws = light.position_ws;
+    out.bounds_center_ws = out.position_ws;
     out.name = strings.add(light.name);
     if (light.type == LightType::directional) {
       out.type = pack::LightType::directional;
@@ -61,18 +72,18 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
       out.inner_cone_cos = std::cos(light.inner_cone_rad);
       out.outer_cone_cos = std::cos(light.outer_cone_rad);
     }
-    out.nearest_caster_m = out.range_m;
     const FloatSphere bounds = rounded_outwards(light_bounds(out));
     out.bounds_center_ws = bounds.center;
     out.bounds_radius_m = bounds.radius;
     if (!pack.voxel_grid.empty()) out.voxel = cell_at(pack.voxel_grid[0], out.position_ws);
     pack.lights.push_back(out);
   }
+  tbb::parallel_for(std::size_t{0}, pack.lights.size(), [&](std::size_t i) { measure_nearest(pack, pack.lights[i]); });
 }
 
 void make_cameras(const Scene& scene, Strings& strings, pack::Contents& pack) {
   for (const Camera& camera : scene.cameras) {
-    pack.cameras.push_back({.position_ws = camera.position_ws,
+    pack.cameras.push_back({.position_ws = glm::vec3(camera.position_ws),
                             .yfov_rad = camera.yfov_rad,
                             .forward_ws = camera.forward_ws,
                             .aspect = camera.aspect,

@@ -129,7 +129,7 @@ void add_geometry_settings(CacheKey& key, const BakeSettings& settings) {
 
 std::string geometry_entry(const Scene& scene, const BakeSettings& settings) {
   const auto& [sources, files_read, meshes, instances, materials, textures, images, lights, cameras, nodes, animations,
-               skins] = scene;
+               skins, origin_m] = scene;
   CacheKey key("geometry");
   add_geometry_settings(key, settings);
   SceneKey parts(key);

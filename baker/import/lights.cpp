@@ -91,7 +91,7 @@ void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warning
   if (out.type == LightType::directional) {
     out.range_m.reset();
   } else {
-    out.position_ws = glm::vec3(placed.world_from_local[3]);
+    out.position_ws = glm::dvec3(placed.world_from_local[3]);
   }
   out.inner_cone_rad = static_cast<float>(in.spot.innerConeAngle);
   out.outer_cone_rad = static_cast<float>(in.spot.outerConeAngle);

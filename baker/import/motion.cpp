@@ -22,7 +22,7 @@ bool carries(const tinygltf::Node& node, bool visible) {
 
 /// The parts of a rest pose that has a matrix: as near as they come, since nothing animates such a node.
 void decompose(const glm::dmat4& m, Node& out) {
-  out.translation = glm::vec3(m[3]);
+  out.translation = glm::dvec3(m[3]);
   glm::dmat3 axes(m);
   if (glm::determinant(axes) < 0) axes[0] = -axes[0];
   for (int c = 0; c < 3; ++c) {
@@ -43,7 +43,7 @@ Node node_record(const tinygltf::Node& in, const glm::dmat4& parent_from_local) 
     decompose(parent_from_local, out);
     return out;
   }
-  for (int c = 0; c < 3 && !in.translation.empty(); ++c) out.translation[c] = static_cast<float>(in.translation[c]);
+  for (int c = 0; c < 3 && !in.translation.empty(); ++c) out.translation[c] = in.translation[c];
   for (int c = 0; c < 3 && !in.scale.empty(); ++c) out.scale[c] = static_cast<float>(in.scale[c]);
   if (in.rotation.empty()) return out;
   const glm::dvec4 rotation(in.rotation[0], in.rotation[1], in.rotation[2], in.rotation[3]);

@@ -136,7 +136,7 @@ void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnin
   }
   Camera out;
   out.name = name_of(node, in.name);
-  out.position_ws = glm::vec3(placed.world_from_local[3]);
+  out.position_ws = glm::dvec3(placed.world_from_local[3]);
   out.forward_ws = glm::vec3(forward);
   out.up_ws = glm::vec3(glm::normalize(across));
   out.yfov_rad = static_cast<float>(in.perspective.yfov);

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const glm::vec3& v) {
+Json to_json(const glm::dvec3& v) {
   return Json::array({v.x, v.y, v.z});
 }
 
@@ -99,6 +99,7 @@ Json lights(const pack::File& file) {
                     {"intensity", light.intensity},
                     {"range_m", light.range_m},
                     {"range_source", name_of(light.range_source)},
+                    {"nearest_caster_m", light.nearest_caster_m},
                     {"inner_cone_cos", light.inner_cone_cos},
                     {"outer_cone_cos", light.outer_cone_cos},
                     {"bounds_center_ws", to_json(light.bounds_center_ws)},
@@ -139,6 +140,7 @@ std::string json_report(const std::string& path, const pack::File& file) {
                        {"sources", summary.sources},
                        {"bounds_min_ws", to_json(view.bake_info->bounds_min_ws)},
                        {"bounds_max_ws", to_json(view.bake_info->bounds_max_ws)},
+                       {"origin_m", to_json(view.bake_info->origin_m)},
                        {"range_threshold_lx", view.bake_info->range_threshold_lx},
                        {"position_error_m", view.bake_info->position_error_m},
                        {"normal_error_rad", view.bake_info->normal_error_rad},

@@ -39,6 +39,13 @@ std::string vector_text(const glm::vec3& v) {
   return fmt::format("{:.3g}, {:.3g}, {:.3g}", v.x, v.y, v.z);
 }
 
+/// In the coordinates of the glTF; far from their origin to the centimetre.
+std::string place_text(const glm::vec3& p_ws, const pack::BakeInfo& info) {
+  if (info.origin_m == glm::dvec3(0)) return vector_text(p_ws);
+  const glm::dvec3 p = info.origin_m + glm::dvec3(p_ws);
+  return fmt::format("{:.2f}, {:.2f}, {:.2f}", p.x, p.y, p.z);
+}
+
 void put_sections(Out out, const pack::View& view, const Summary& summary) {
   fmt::format_to(out, "\n{:<20}{:>12}{:>8}{:>16}{:>16}  {}\n", "section", "count", "stride", "bytes", "stored",
                  "codec");
@@ -117,7 +124,8 @@ void put_light_table(Out out, const pack::File& file) {
   fmt::format_to(out, "  {:<12}{:<30}{:>12}    {:<20}{}\n", "type", "position, m", "intensity", "range", "name");
   for (const pack::Light& light : file.view().lights) {
     const bool directional = light.type == pack::LightType::directional;
-    const std::string place = directional ? "to " + vector_text(light.direction_ws) : vector_text(light.position_ws);
+    const std::string place =
+        directional ? "to " + vector_text(light.direction_ws) : place_text(light.position_ws, *file.view().bake_info);
     const std::string range = light.range_source == pack::RangeSource::unbounded
                                   ? "no end"
                                   : fmt::format("{:.4g} m {}", light.range_m, name_of(light.range_source));
@@ -147,7 +155,7 @@ void put_cameras(Out out, const pack::File& file) {
   fmt::format_to(out, "cameras    {}\n", file.view().cameras.size());
   for (const pack::Camera& camera : file.view().cameras) {
     fmt::format_to(out, "  {}  at {} towards {}, {:.1f} degrees high\n", printable(file.text(camera.name)),
-                   vector_text(camera.position_ws), vector_text(camera.forward_ws),
+                   place_text(camera.position_ws, *file.view().bake_info), vector_text(camera.forward_ws),
                    camera.yfov_rad * 180.0 / std::acos(-1.0));
   }
 }
@@ -161,7 +169,12 @@ std::string text_report(const std::string& path, const pack::File& file, bool al
   const Out out = std::back_inserter(text);
   fmt::format_to(out, "{}: {}, version {}\n", printable(path), size_text(file.size_bytes()), pack::schema_version);
   for (const std::string& source : summary.sources) fmt::format_to(out, "  from {}\n", printable(source));
-  fmt::format_to(out, "  bounds ({}) to ({}) m\n", vector_text(info.bounds_min_ws), vector_text(info.bounds_max_ws));
+  fmt::format_to(out, "  bounds ({}) to ({}) m\n", place_text(info.bounds_min_ws, info),
+                 place_text(info.bounds_max_ws, info));
+  if (info.origin_m != glm::dvec3(0)) {
+    fmt::format_to(out, "  stored from an origin at ({:.0f}, {:.0f}, {:.0f}) m; places here are the glTF's\n",
+                   info.origin_m.x, info.origin_m.y, info.origin_m.z);
+  }
   put_sections(out, file.view(), summary);
   put_geometry(out, file.view(), summary);
   put_structures(out, file.view(), summary);

@@ -16,15 +16,14 @@ CameraAxes axes_of(const Camera& camera) {
   return axes;
 }
 
-glm::mat4 clip_from_world(const Camera& camera, float aspect) {
+glm::mat4 clip_from_eye(const Camera& camera, float aspect) {
   const CameraAxes a = axes_of(camera);
   const float focal = 1.0f / std::tan(camera.yfov_rad * 0.5f);
-  const glm::mat4 view_from_world = glm::transpose(
-      glm::mat4(glm::vec4(a.right, -glm::dot(a.right, camera.eye_ws)), glm::vec4(a.up, -glm::dot(a.up, camera.eye_ws)),
-                glm::vec4(-a.forward, glm::dot(a.forward, camera.eye_ws)), glm::vec4(0, 0, 0, 1)));
+  const glm::mat4 view_from_eye = glm::transpose(
+      glm::mat4(glm::vec4(a.right, 0), glm::vec4(a.up, 0), glm::vec4(-a.forward, 0), glm::vec4(0, 0, 0, 1)));
   const glm::mat4 clip_from_view(glm::vec4(focal / aspect, 0, 0, 0), glm::vec4(0, -focal, 0, 0), glm::vec4(0, 0, 0, -1),
                                  glm::vec4(0, 0, camera.znear_m, 0));
-  return clip_from_view * view_from_world;
+  return clip_from_view * view_from_eye;
 }
 
 FrustumPlanes frustum_planes(const Camera& camera, float aspect) {

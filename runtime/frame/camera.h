@@ -26,8 +26,8 @@ struct CameraAxes {
 };
 CameraAxes axes_of(const Camera& camera);
 
-/// Reversed depth, 1 at znear and 0 at infinity; clip y points down.
-glm::mat4 clip_from_world(const Camera& camera, float aspect);
+/// Of positions from the eye, along the world's axes. Reversed depth, 1 at znear and 0 at infinity; clip y points down.
+glm::mat4 clip_from_eye(const Camera& camera, float aspect);
 
 /// Sides and near plane; a point is inside where dot(plane.xyz, p) + plane.w >= 0 for all. Normals have unit length.
 using FrustumPlanes = std::array<glm::vec4, 5>;

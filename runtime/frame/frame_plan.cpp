@@ -21,9 +21,9 @@ std::array<glm::vec4, 4> columns(const glm::mat4& m) {
 }
 
 frame::ViewConstants view_constants(const RenderSettings& settings, float aspect) {
-  const glm::mat4 clip = clip_from_world(settings.camera, aspect);
-  return {.clip_from_world = columns(clip),
-          .world_from_clip = columns(glm::inverse(clip)),
+  const glm::mat4 clip = clip_from_eye(settings.camera, aspect);
+  return {.clip_from_eye = columns(clip),
+          .eye_from_clip = columns(glm::inverse(clip)),
           .eye_ws = settings.camera.eye_ws,
           .near_m = settings.camera.znear_m,
           .forward_ws = axes_of(settings.camera).forward,
@@ -76,7 +76,7 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
     place_visibility_rects(plan.list, settings.camera, settings.width, settings.height);
   plan.rounds = plan_rounds(plan.list, plan.views, limits);
   plan.view = view_constants(settings, aspect);
-  plan.views.push_back({.clip_from_world = plan.view.clip_from_world});
+  plan.views.push_back({.clip_from_center = plan.view.clip_from_eye, .center_ws = plan.view.eye_ws});
   plan.project_ms = ms_since(start);
   return plan;
 }

@@ -28,12 +28,12 @@ void record_read_surfaces(VkCommandBuffer cmd, const Targets& targets, const gpu
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
 
-// As shading/world_position.glsl and shading/surface.glsl.
+// As shading/eye_position.glsl and shading/surface.glsl.
 std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const frame::ViewConstants& view) {
   const auto width = static_cast<uint32_t>(view.size_px.x);
   const auto height = static_cast<uint32_t>(view.size_px.y);
-  const glm::mat4 world_from_clip(view.world_from_clip[0], view.world_from_clip[1], view.world_from_clip[2],
-                                  view.world_from_clip[3]);
+  const glm::mat4 eye_from_clip(view.eye_from_clip[0], view.eye_from_clip[1], view.eye_from_clip[2],
+                                view.eye_from_clip[3]);
   const size_t pixels = size_t{width} * height;
   std::vector<SurfacePoint> points(pixels, {glm::vec3(0.0f), glm::vec3(0.0f)});
   for (size_t i = 0; i < pixels; ++i) {
@@ -43,7 +43,7 @@ std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const fram
     std::memcpy(&normal_bits, readback.mapped + 16 * i + 4, sizeof normal_bits);
     if (depth == 0.0f) continue;
     const glm::vec2 pixel(static_cast<float>(i % width) + 0.5f, static_cast<float>(i / width) + 0.5f);
-    const glm::vec4 p = world_from_clip * glm::vec4(pixel / view.size_px * 2.0f - 1.0f, depth, 1.0f);
+    const glm::vec4 p = eye_from_clip * glm::vec4(pixel / view.size_px * 2.0f - 1.0f, depth, 1.0f);
     points[i] = {glm::vec3(p) / p.w, pack::decode_normal(normal_bits)};
   }
   return points;
@@ -60,7 +60,7 @@ void fill_visibility(const FramePlan& plan, const Round& round, std::span<const 
       in_rect.insert(in_rect.end(), row.begin(), row.end());
     }
     const float radius_m = map.is_directional ? map.filter_radius_m / plan.recipe.z_far_m : map.filter_radius_m;
-    source({plan.list.lights[map.first_light], radius_m, in_rect,
+    source({plan.list.lights[map.first_light], map.near_m, radius_m, plan.view.eye_ws, in_rect,
             bytes.subspan(map.first_visibility, visibility_bytes(map))});
   }
 }

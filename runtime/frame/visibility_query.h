@@ -14,14 +14,16 @@ namespace chandelier {
 
 /// What the camera sees in a pixel.
 struct SurfacePoint {
-  glm::vec3 position_ws;
+  glm::vec3 position;   // from the camera's eye, along the world's axes
   glm::vec3 normal_ws;  // of the triangle, unit length, facing the camera; zero where nothing is seen
 };
 
 /// One light and the points that its range may reach. `visibility` has a byte for each point: 255 is fully lit.
 struct VisibilityQuery {
   const frame::FrameLight& light;
+  float near_m;    // what is nearer to the light casts no shadow; unused for a directional light
   float radius_m;  // of the sphere that shines; of a directional light, of its disc a metre away
+  glm::vec3 eye_ws;
   std::span<const SurfacePoint> points;
   std::span<uint8_t> visibility;
 };

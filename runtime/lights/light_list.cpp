@@ -9,6 +9,7 @@
 #include <string>
 #include <unordered_map>
 
+#include "light_near.h"
 #include "lights/light_clusters.h"
 #include "lights/pack_lights.h"
 
@@ -205,6 +206,7 @@ LightList make_list(std::span<const pack::Light> lights, std::vector<Member> mem
     if (i == 0 || members[i - 1].center != member.center) {
       list.maps.push_back({.center_ws = lights[member.center].position_ws,
                            .range_m = member.map_range_m,
+                           .near_m = pack::shadow_near_m(lights[member.center]),
                            .filter_radius_m = member.filter_radius_m,
                            .first_light = static_cast<uint32_t>(i),
                            .is_directional = is_directional(lights[member.center])});

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame_schema.h"
+#include "light_near.h"
 #include "lights/mean_materials.h"
 #include "lights/pack_lights.h"
 
@@ -160,19 +160,21 @@ bool LightSamples::is_lit(uint32_t i, const glm::vec3& place_ws) const {
   // What is nearer to the light than the near plane of its shadow map casts no shadow.
   const glm::vec3 d = place_ws - light(i).position_ws;
   const float distance = glm::length(d);
-  if (distance <= frame::shadow_near_m) return true;
-  return !scene_.rays.blocked(place_ws, light(i).position_ws + d * (frame::shadow_near_m / distance));
+  const float near_m = pack::shadow_near_m(light(i));
+  if (distance <= near_m) return true;
+  return !scene_.rays.blocked(place_ws, light(i).position_ws + d * (near_m / distance));
 }
 
 float LightSamples::blocked_at(uint32_t i, const glm::vec3& place_ws) const {
   ++rays_cast_;
   const glm::vec3 d = place_ws - light(i).position_ws;
   const float distance = glm::length(d);
-  if (distance <= frame::shadow_near_m) return 1.0f;
-  const glm::vec3 from = light(i).position_ws + d * (frame::shadow_near_m / distance);
-  const float way_m = distance - frame::shadow_near_m - rays::PackRays::end_gap_m(from, place_ws);
+  const float near_m = pack::shadow_near_m(light(i));
+  if (distance <= near_m) return 1.0f;
+  const glm::vec3 from = light(i).position_ws + d * (near_m / distance);
+  const float way_m = distance - near_m - rays::PackRays::end_gap_m(from, place_ws);
   const auto hit = scene_.rays.first_hit(from, d / distance, std::max(way_m, 1e-6f), rays::Meets::casters);
-  return hit ? (hit->distance_m + frame::shadow_near_m) / distance : 1.0f;
+  return hit ? (hit->distance_m + near_m) / distance : 1.0f;
 }
 
 }  // namespace chandelier

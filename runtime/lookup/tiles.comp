@@ -6,7 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
 #include "pack_schema.glsl"
-#include "shading/world_position.glsl"
+#include "shading/eye_position.glsl"
 
 layout(local_size_x = TILE_SIZE_PX, local_size_y = TILE_SIZE_PX) in;
 layout(binding = 0, scalar) readonly buffer View { ViewConstants view; };
@@ -28,9 +28,9 @@ struct Tile {
   float farthest_m;
 };
 
-// Depth 0 is infinitely far: what is left of a position there is its direction from the eye, without the eye's rounding.
+// Depth 0 is infinitely far: what is left of a position there is its direction.
 vec3 corner_way(vec2 pixel) {
-  return normalize(world_point(view, pixel, 0.0).xyz);
+  return normalize(eye_point(view, pixel, 0.0).xyz);
 }
 
 Tile make_tile(float nearest, float farthest) {
@@ -47,7 +47,7 @@ Tile make_tile(float nearest, float farthest) {
 bool reaches(FrameLight light, Tile tile) {
   if (light.type == LIGHT_TYPE_DIRECTIONAL) return true;
   vec3 d = light.position_ws - view.eye_ws;
-  float radius = light.range_m + ROUNDING * (light.range_m + tile.farthest_m + length(view.eye_ws));
+  float radius = light.range_m + ROUNDING * (light.range_m + tile.farthest_m);
   float along = dot(d, view.forward_ws);
   bool inside = along + radius >= tile.nearest_m && along - radius <= tile.farthest_m;
   for (uint i = 0u; i < 4u; ++i) inside = inside && dot(d, tile.sides[i]) >= -radius;

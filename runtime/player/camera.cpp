@@ -18,6 +18,7 @@ namespace chandelier::player {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
+constexpr double kFine_m = 1024.0;       // floats up to half of it are at most 0.03 mm apart
 constexpr float kHighestPitch = 1.553f;  // radians: 89 degrees
 const glm::vec3 kUp(0.0f, 1.0f, 0.0f);
 
@@ -37,8 +38,18 @@ bool is_camera_numbers(std::string_view text) {
   return text.find(',') != text.npos && text.find_first_not_of("0123456789+-.eE, ") == text.npos;
 }
 
-std::optional<Camera> camera_from_numbers(std::string_view text) {
-  std::array<float, 7> numbers{};
+Camera in_world(const FileCamera& camera, const glm::dvec3& origin_m) {
+  Camera out = camera.camera;
+  out.eye_ws = glm::vec3(camera.eye_m - origin_m);
+  return out;
+}
+
+FileCamera in_file(const Camera& camera, const glm::dvec3& origin_m) {
+  return {origin_m + glm::dvec3(camera.eye_ws), camera};
+}
+
+std::optional<FileCamera> camera_from_numbers(std::string_view text) {
+  std::array<double, 7> numbers{};
   const char* at = text.data();
   const char* const end = text.data() + text.size();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -48,13 +59,15 @@ std::optional<Camera> camera_from_numbers(std::string_view text) {
     if (error != std::errc() || !std::isfinite(numbers[i])) return std::nullopt;
     at = after;
   }
-  const glm::vec3 eye(numbers[0], numbers[1], numbers[2]);
-  const glm::vec3 target(numbers[3], numbers[4], numbers[5]);
+  const glm::dvec3 eye_m(numbers[0], numbers[1], numbers[2]);
+  const glm::dvec3 from_m = glm::round(eye_m / kFine_m) * kFine_m;  // seen from there, floats are fine
+  const glm::vec3 eye(eye_m - from_m), target(glm::dvec3(numbers[3], numbers[4], numbers[5]) - from_m);
   const float distance = glm::distance(eye, target);
-  if (at != end || !(distance > 1e-6f) || !std::isfinite(distance * distance) ||
-      !(numbers[6] > 0.0f && numbers[6] < 179.0f))
+  const auto fov_deg = static_cast<float>(numbers[6]);
+  if (at != end || !std::isfinite(glm::length(glm::vec3(eye_m))) || !(distance > 1e-6f) ||
+      !std::isfinite(distance * distance) || !(fov_deg > 0.0f && fov_deg < 179.0f))
     return std::nullopt;
-  return camera_looking_at(eye, target, numbers[6] * kPi / 180.0f);
+  return FileCamera{eye_m, camera_looking_at(eye, target, fov_deg * kPi / 180.0f)};
 }
 
 Camera camera_looking_at(const glm::vec3& eye_ws, const glm::vec3& target_ws, float yfov_rad) {
@@ -84,14 +97,15 @@ Camera camera_framing(const glm::vec3& bounds_min_ws, const glm::vec3& bounds_ma
 
 NamedCamera choose_camera(const pack::File& pack, const std::string& name, float aspect) {
   const auto cameras = pack.view().cameras;
+  const glm::dvec3& origin_m = pack.view().bake_info->origin_m;
   std::vector<std::string_view> names;
   for (const pack::Camera& camera : cameras) {
     names.push_back(pack.text(camera.name));
-    if (name.empty() || names.back() == name) return {std::string(names.back()), named(camera)};
+    if (name.empty() || names.back() == name) return {std::string(names.back()), named(camera), origin_m};
   }
   if (name.empty()) {
     const pack::BakeInfo& info = *pack.view().bake_info;
-    return {"", camera_framing(info.bounds_min_ws, info.bounds_max_ws, aspect)};
+    return {"", camera_framing(info.bounds_min_ws, info.bounds_max_ws, aspect), origin_m};
   }
   if (names.empty()) throw std::runtime_error(fmt::format("--camera: the pack has no cameras ({})", name));
   throw std::runtime_error(

@@ -13,13 +13,23 @@ namespace chandelier::player {
 struct NamedCamera {
   std::string name;
   Camera camera;
+  glm::dvec3 origin_m{0.0};  // of the pack: its world in the file's coordinates
 };
+
+/// A camera in the coordinates of the glTF, from which a pack's world may lie far away.
+struct FileCamera {
+  glm::dvec3 eye_m{0.0};
+  Camera camera;  // but for its eye_ws
+};
+/// In the world of a pack with this origin.
+Camera in_world(const FileCamera& camera, const glm::dvec3& origin_m);
+FileCamera in_file(const Camera& camera, const glm::dvec3& origin_m);
 
 /// True where `text` is meant as numbers rather than as a name: "1,2,3,…".
 bool is_camera_numbers(std::string_view text);
 /// "ex,ey,ez,tx,ty,tz,fov_deg": eye and target in metres, whole vertical angle in degrees. Nothing where it is
 /// malformed.
-std::optional<Camera> camera_from_numbers(std::string_view text);
+std::optional<FileCamera> camera_from_numbers(std::string_view text);
 /// Upright (+Y) unless it looks straight up or down.
 Camera camera_looking_at(const glm::vec3& eye_ws, const glm::vec3& target_ws, float yfov_rad);
 /// Sees the whole box from a corner above.

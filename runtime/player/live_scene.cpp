@@ -66,7 +66,7 @@ void LiveScene::replace() {
   options.width = settings.width;
   options.height = settings.height;
   const bool was_moved = settings.camera != pack_camera_;
-  if (was_moved) options.camera = settings.camera;
+  if (was_moved) options.camera = in_file(settings.camera, scene_->camera.origin_m);
   try {
     auto next = std::make_unique<const Scene>(options);
     settings = put_on_device(*next);

@@ -64,7 +64,7 @@ ValidationLog draw(const Options& asked, std::unique_ptr<const Scene> scene) {
   const VisibilitySource visibility = visibility_for(options.recipes, pack);
   if (options.mode == Mode::headless) run_headless(options, camera, device, renderer, visibility);
   if (options.mode == Mode::compare) run_comparison(options, camera, pack, device, renderer, visibility);
-  if (options.mode == Mode::path) run_path(options, device, renderer, visibility);
+  if (options.mode == Mode::path) run_path(options, camera.origin_m, device, renderer, visibility);
   return device.validation_log();
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frame/renderer.h"
+#include "player/camera.h"
 #include "player/stats.h"
 #include "predict/d_init_search.h"
 
@@ -34,9 +35,9 @@ struct Options {
   Budget budget;                     // of recipes whose lights share maps
   uint32_t width = 1280;
   uint32_t height = 720;
-  std::string camera_name;         // empty: the pack's first
-  std::optional<Camera> camera;    // given by numbers
-  std::optional<uint32_t> frames;  // timed frames; in a window: close after so many
+  std::string camera_name;           // empty: the pack's first
+  std::optional<FileCamera> camera;  // given by numbers
+  std::optional<uint32_t> frames;    // timed frames; in a window: close after so many
   std::string device;
   bool validation = false;
   float ambient = 0.0f;

@@ -29,7 +29,7 @@ Json parse_file(const std::filesystem::path& file) {
   }
 }
 
-std::vector<Camera> read_keys(const std::filesystem::path& file) {
+std::vector<Camera> read_keys(const std::filesystem::path& file, const glm::dvec3& origin_m) {
   const Json json = parse_file(file);
   if (!json.is_object() || !json.contains("keys") || !json["keys"].is_array())
     throw std::runtime_error(fmt::format("{}: must be an object with an array of cameras, \"keys\"", file.string()));
@@ -39,7 +39,7 @@ std::vector<Camera> read_keys(const std::filesystem::path& file) {
     if (!camera)
       throw std::runtime_error(fmt::format("{}: keys: {}: must be \"ex,ey,ez,tx,ty,tz,fov_deg\" ({})", file.string(),
                                            keys.size(), key.dump()));
-    keys.push_back(*camera);
+    keys.push_back(in_world(*camera, origin_m));
   }
   if (keys.size() < 2)
     throw std::runtime_error(
@@ -106,8 +106,8 @@ std::vector<Camera> cameras_along(const std::vector<Camera>& keys, uint32_t fram
   return cameras;
 }
 
-std::vector<Camera> read_path(const std::filesystem::path& file, uint32_t frames) {
-  return cameras_along(read_keys(file), frames);
+std::vector<Camera> read_path(const std::filesystem::path& file, uint32_t frames, const glm::dvec3& origin_m) {
+  return cameras_along(read_keys(file, origin_m), frames);
 }
 
 CenterChanges center_changes(std::span<const uint32_t> before, std::span<const uint32_t> after) {
@@ -120,9 +120,9 @@ CenterChanges center_changes(std::span<const uint32_t> before, std::span<const u
   return changes;
 }
 
-void run_path(const Options& options, const gpu::Device& device, Renderer& renderer,
+void run_path(const Options& options, const glm::dvec3& origin_m, const gpu::Device& device, Renderer& renderer,
               const VisibilitySource& visibility) {
-  const std::vector<Camera> cameras = read_path(options.path, options.frames.value_or(60));
+  const std::vector<Camera> cameras = read_path(options.path, options.frames.value_or(60), origin_m);
   make_folder(options.report);
   Run run{.pack = options.pack.filename().string(),
           .device = device.name,
@@ -134,7 +134,7 @@ void run_path(const Options& options, const gpu::Device& device, Renderer& rende
   std::vector<uint32_t> before;
   std::optional<float> exposure_ev = options.exposure_ev;
   for (const Camera& camera : cameras) {
-    run.camera = {"", camera};
+    run.camera = {"", camera, origin_m};
     run.settings = render_settings(options, options.recipes.front().recipe, camera, visibility);
     run.settings.exposure_ev = exposure_ev;
     run.settings.previous_centers = before;

@@ -22,9 +22,9 @@ struct PathStep {
   double unexplained_rmse = 0.0;
 };
 
-/// `frames` cameras evenly along a path file: {"keys": ["ex,ey,ez,tx,ty,tz,fov_deg", …]}, at least two. Throws
-/// std::runtime_error, one line.
-std::vector<Camera> read_path(const std::filesystem::path& file, uint32_t frames);
+/// `frames` cameras evenly along a path file: {"keys": ["ex,ey,ez,tx,ty,tz,fov_deg", …]}, at least two, in the world
+/// of a pack with this origin. Throws std::runtime_error, one line.
+std::vector<Camera> read_path(const std::filesystem::path& file, uint32_t frames, const glm::dvec3& origin_m);
 /// The same from keys. Eye, direction and angle go evenly from key to key.
 std::vector<Camera> cameras_along(const std::vector<Camera>& keys, uint32_t frames);
 
@@ -36,7 +36,7 @@ struct CenterChanges {
 CenterChanges center_changes(std::span<const uint32_t> before, std::span<const uint32_t> after);
 
 /// Draws every step and writes path.json and last.png into the report's folder. Throws.
-void run_path(const Options& options, const gpu::Device& device, Renderer& renderer,
+void run_path(const Options& options, const glm::dvec3& origin_m, const gpu::Device& device, Renderer& renderer,
               const VisibilitySource& visibility);
 
 }  // namespace chandelier::player

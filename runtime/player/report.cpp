@@ -239,14 +239,15 @@ std::string recipes(const Comparison& c) {
 
 std::string about(const Comparison& c) {
   const Camera& camera = c.a.camera.camera;
+  const glm::dvec3 eye_m = in_file(camera, c.a.camera.origin_m).eye_m;
   return fmt::format(
       "<p class=\"about\">{}, {}×{} pixels, camera {} at ({:.2f}, {:.2f}, {:.2f}) looking along ({:.2f}, {:.2f}, "
       "{:.2f}), "
       "exposure {:+.2f} EV on both sides.<br>{}; {}</p>\n",
       escape_html(c.a.pack), c.a.settings.width, c.a.settings.height,
-      c.a.camera.name.empty() ? "" : "“" + escape_html(c.a.camera.name) + "”", camera.eye_ws.x, camera.eye_ws.y,
-      camera.eye_ws.z, camera.forward_ws.x, camera.forward_ws.y, camera.forward_ws.z, c.a.stats.exposure_ev,
-      escape_html(c.a.device), escape_html(c.a.driver));
+      c.a.camera.name.empty() ? "" : "“" + escape_html(c.a.camera.name) + "”", eye_m.x, eye_m.y, eye_m.z,
+      camera.forward_ws.x, camera.forward_ws.y, camera.forward_ws.z, c.a.stats.exposure_ev, escape_html(c.a.device),
+      escape_html(c.a.driver));
 }
 
 }  // namespace

@@ -10,7 +10,9 @@ constexpr int64_t ns_per_s = 1'000'000'000;
 
 NamedCamera camera_of(const Options& options, const pack::File& pack) {
   const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-  return options.camera ? NamedCamera{"", *options.camera} : choose_camera(pack, options.camera_name, aspect);
+  const glm::dvec3& origin_m = pack.view().bake_info->origin_m;
+  return options.camera ? NamedCamera{"", in_world(*options.camera, origin_m), origin_m}
+                        : choose_camera(pack, options.camera_name, aspect);
 }
 
 }  // namespace

@@ -43,9 +43,9 @@ double median_of(std::span<const FrameStats> frames, Get get) {
 
 Json camera_json(const NamedCamera& named) {
   const Camera& camera = named.camera;
-  const auto vec = [](const glm::vec3& v) { return Json{v.x, v.y, v.z}; };
+  const auto vec = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
   return {{"name", named.name},
-          {"eye_ws", vec(camera.eye_ws)},
+          {"eye_m", vec(in_file(camera, named.origin_m).eye_m)},
           {"forward_ws", vec(camera.forward_ws)},
           {"up_ws", vec(camera.up_ws)},
           {"yfov_deg", camera.yfov_rad * 180.0f / std::numbers::pi_v<float>}};

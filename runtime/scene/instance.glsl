@@ -3,8 +3,11 @@
 #ifndef CHANDELIER_INSTANCE_GLSL
 #define CHANDELIER_INSTANCE_GLSL
 
-vec3 to_world(vec4 rows[3], vec3 p) {
-  return vec3(dot(rows[0].xyz, p) + rows[0].w, dot(rows[1].xyz, p) + rows[1].w, dot(rows[2].xyz, p) + rows[2].w);
+// As seen from a point of the world, along the world's axes. Where both are far from the world's origin, what is taken off
+// first are large numbers that are nearly equal: nothing is rounded.
+vec3 position_from(vec3 origin_ws, vec4 rows[3], vec3 p) {
+  return vec3(dot(rows[0].xyz, p) + (rows[0].w - origin_ws.x), dot(rows[1].xyz, p) + (rows[1].w - origin_ws.y),
+              dot(rows[2].xyz, p) + (rows[2].w - origin_ws.z));
 }
 
 vec3 direction_to_world(vec4 rows[3], vec3 d) {

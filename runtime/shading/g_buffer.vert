@@ -30,8 +30,7 @@ layout(location = 9) flat out uint material;
 void main() {
   CasterDraw draw = draws[gl_InstanceIndex];
   vec4 rows[3] = instances[draw.instance].world_from_local;
-  vec3 p = to_world(rows, position_ls);
-  position_from_eye = p - view.eye_ws;
+  position_from_eye = position_from(view.eye_ws, rows, position_ls);
   normal_ws = normal_to_world(rows, decode_normal(normal_bits));
   // The bitangent's sign refers to the unmirrored frame.
   float mirror = determinant(mat3(rows[0].xyz, rows[1].xyz, rows[2].xyz)) < 0.0 ? -1.0 : 1.0;
@@ -41,6 +40,6 @@ void main() {
   for (uint i = 0u; i < 5u; ++i) uv[i] = uv_of(uv1_mask, draw.material, i, uv0_in, uv1_in);
   color = color_in;
   material = draw.material;
-  gl_Position = mat4(view.clip_from_world[0], view.clip_from_world[1], view.clip_from_world[2], view.clip_from_world[3]) *
-                vec4(p, 1.0);
+  gl_Position = mat4(view.clip_from_eye[0], view.clip_from_eye[1], view.clip_from_eye[2], view.clip_from_eye[3]) *
+                vec4(position_from_eye, 1.0);
 }

@@ -7,7 +7,7 @@
 #include "frame_schema.glsl"
 #include "pack_schema.glsl"
 #include "shading/surface.glsl"
-#include "shading/world_position.glsl"
+#include "shading/eye_position.glsl"
 
 layout(constant_id = 0) const uint filter_answer = 0u;
 layout(constant_id = 1) const uint shade_answer = 0u;
@@ -35,9 +35,9 @@ layout(push_constant, scalar) uniform Push { ShadeConstants round; };
 #include "lookup/lookup.glsl"
 #include "shadows/filter/visibility.glsl"
 
-// LightCluster §3.2.2: beyond C_att no light of the map reaches.
+// LightCluster §3.2.2: beyond C_att no light of the map reaches. p: from the eye.
 bool in_range(ShadowMap map, vec3 p) {
-  return map.is_directional != 0u || distance(p, map.center_ws) < map.range_m;
+  return map.is_directional != 0u || length(from_center(map, p)) < map.range_m;
 }
 
 // Where a map's visibility texture keeps a pixel; NONE outside its rectangle.

@@ -12,7 +12,7 @@ float cone_falloff(FrameLight light, vec3 to_light) {
   return cone * cone;
 }
 
-// A light's share at p, before visibility. What is not asked of a light is not read: all threads ask alike for its type.
+// A light's share at p, which is from the eye, before visibility. What is not asked of a light is not read: all threads ask alike for its type.
 vec3 unshadowed(uint number, Reflector r, vec3 geometric_normal, vec3 p) {
   vec3 to_light;
   float falloff = 1.0;
@@ -20,7 +20,7 @@ vec3 unshadowed(uint number, Reflector r, vec3 geometric_normal, vec3 p) {
   if (type == LIGHT_TYPE_DIRECTIONAL) {
     to_light = -lights[number].direction_ws;
   } else {
-    vec3 d = lights[number].position_ws - p;
+    vec3 d = (lights[number].position_ws - view.eye_ws) - p;
     float distance2 = dot(d, d);
     float range_m = lights[number].range_m;
     to_light = d * inversesqrt(max(distance2, 1e-12));
@@ -42,7 +42,7 @@ float delivered_visibility(ShadowMap map, Receiver receiver, uvec2 pixel) {
 
 // Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked.
 vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
-  Reflector r = reflector(s, normalize(view.eye_ws - p));
+  Reflector r = reflector(s, normalize(-p));
   if (shade_answer == SHADE_LAMBERT) r.diffuse = s.base_color / PI;
   Receiver receiver = receiver_at(p, s.geometric_normal);
   vec3 sum = vec3(0.0);
@@ -69,6 +69,6 @@ void main() {
   bool unlit = radiance.a == 0.0;
   if (depth == 0.0 || unlit || round.first_light == round.light_end) return;
   Surface s = unpack_surface(texelFetch(surface_image, pixel, 0));
-  vec3 p = world_position(view, vec2(pixel) + 0.5, depth);
+  vec3 p = eye_position(view, vec2(pixel) + 0.5, depth);
   imageStore(radiance_image, pixel, vec4(radiance.rgb + lit_by_round(s, p, uvec2(pixel)), radiance.a));
 }

@@ -34,7 +34,7 @@ struct AlphaCorner {
 
 // Triangles that are drawn with the same test.
 struct Casters {
-  std::vector<glm::vec3> corners_ws;
+  std::vector<glm::vec3> corners;
   std::vector<AlphaCorner> alpha_corners;  // empty for opaque ones
   std::optional<AlphaTexture> texture;
   float cutoff = 0.0f;
@@ -59,10 +59,18 @@ void let_through_cut_out(const RTCFilterFunctionNArguments* hits) {
 }
 
 // By the same sums as scene/instance.glsl.
-glm::vec3 to_world(const pack::Instance& instance, const glm::vec3& p) {
+glm::vec3 position_from(const glm::vec3& origin_ws, const pack::Instance& instance, const glm::vec3& p) {
   const auto& rows = instance.world_from_local;
-  return {glm::dot(glm::vec3(rows[0]), p) + rows[0].w, glm::dot(glm::vec3(rows[1]), p) + rows[1].w,
-          glm::dot(glm::vec3(rows[2]), p) + rows[2].w};
+  return {glm::dot(glm::vec3(rows[0]), p) + (rows[0].w - origin_ws.x),
+          glm::dot(glm::vec3(rows[1]), p) + (rows[1].w - origin_ws.y),
+          glm::dot(glm::vec3(rows[2]), p) + (rows[2].w - origin_ws.z)};
+}
+
+// Where rays of a picture are reckoned from: near its eye, so that what it sees is hardly rounded; the world's own
+// origin for most scenes.
+glm::vec3 origin_near(const glm::vec3& eye_ws) {
+  constexpr float step_m = 1024.0f;
+  return glm::round(eye_ws / step_m) * step_m;
 }
 
 // As shadows/raster/caster.glsl and shading/uv_transform.glsl.
@@ -76,8 +84,8 @@ AlphaCorner alpha_corner(const pack::View& pack, const pack::Material& material,
   return corner;
 }
 
-// By material, those without a test together.
-std::map<uint32_t, Casters> gather_casters(const pack::View& pack) {
+// By material, those without a test together; seen from `origin_ws`.
+std::map<uint32_t, Casters> gather_casters(const pack::View& pack, const glm::vec3& origin_ws) {
   std::map<uint32_t, Casters> by_test;
   for (const pack::BatchInstance& placed : pack.batch_instances) {
     if (!pack::throws_shadow(pack, placed)) continue;
@@ -87,7 +95,8 @@ std::map<uint32_t, Casters> gather_casters(const pack::View& pack) {
     Casters& casters = by_test[masked ? batch.material : pack::none];
     for (uint32_t i = batch.first_index; i < batch.first_index + batch.index_count; ++i) {
       const uint32_t vertex = pack.indices[i].vertex;
-      casters.corners_ws.push_back(to_world(pack.instances[placed.instance], pack.positions[vertex].position_ls));
+      casters.corners.push_back(
+          position_from(origin_ws, pack.instances[placed.instance], pack.positions[vertex].position_ls));
       if (masked) casters.alpha_corners.push_back(alpha_corner(pack, material, vertex));
     }
     if (!masked || casters.texture) continue;
@@ -105,8 +114,9 @@ struct Release {
 
 class RayScene {
  public:
-  explicit RayScene(const pack::View& pack);
+  RayScene(const pack::View& pack, const glm::vec3& origin_ws);
 
+  const glm::vec3& origin_ws() const { return origin_ws_; }
   void answer(const VisibilityQuery& query) const;
 
  private:
@@ -114,12 +124,14 @@ class RayScene {
   void check(const std::string& what) const;
   void answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const;
 
+  glm::vec3 origin_ws_;                  // what everything is reckoned from
   std::map<uint32_t, Casters> casters_;  // outlive the scene, which reads their corners
   std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
   std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
 };
 
-RayScene::RayScene(const pack::View& pack) : casters_(gather_casters(pack)), device_(rtcNewDevice(nullptr)) {
+RayScene::RayScene(const pack::View& pack, const glm::vec3& origin_ws)
+    : origin_ws_(origin_ws), casters_(gather_casters(pack, origin_ws)), device_(rtcNewDevice(nullptr)) {
   if (!device_)
     throw std::runtime_error("Embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
   scene_.reset(rtcNewScene(device_.get()));
@@ -136,10 +148,10 @@ void RayScene::check(const std::string& what) const {
 }
 
 void RayScene::add(Casters& casters) {
-  const std::size_t corners = casters.corners_ws.size();
-  casters.corners_ws.emplace_back();  // Embree reads four floats at a corner
+  const std::size_t corners = casters.corners.size();
+  casters.corners.emplace_back();  // Embree reads four floats at a corner
   const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, casters.corners_ws.data(), 0,
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, casters.corners.data(), 0,
                              sizeof(glm::vec3), corners);
   auto* const indices = static_cast<uint32_t*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), corners / 3));
@@ -154,10 +166,18 @@ void RayScene::add(Casters& casters) {
   rtcReleaseGeometry(geometry);
 }
 
+// A point that the camera sees, from the scene's origin.
+struct Seen {
+  glm::vec3 position;
+  glm::vec3 normal_ws;
+  float gap_m;
+};
+
 // How far points may lie behind what the camera sees: they come from a depth of 32 bits (README.md).
-float gap_m(const SurfacePoint& point) {
-  const glm::vec3 p = glm::abs(point.position_ws);
-  return 1e-5f * std::max(5.0f, std::max(p.x, std::max(p.y, p.z)));
+Seen seen_from(const glm::vec3& eye, const SurfacePoint& point) {
+  const glm::vec3 position = eye + point.position, p = glm::abs(position);
+  const float by_distance = 5.0f * std::min(1.0f, glm::length(point.position));
+  return {position, point.normal_ws, 1e-5f * std::max(by_distance, std::max(p.x, std::max(p.y, p.z)))};
 }
 
 // A way that is clear where the light is seen: from + t · way, t from `begin` to `end`.
@@ -169,22 +189,24 @@ struct Sight {
 };
 
 // To the light's middle. Nothing where no ray is needed: the light does not reach the point, or shines on its back.
-std::optional<Sight> sight(const frame::FrameLight& light, const SurfacePoint& point) {
+// `light` stands at `light_position`, from the scene's origin as the point is.
+std::optional<Sight> sight(const frame::FrameLight& light, const glm::vec3& light_position, float near_m,
+                           const Seen& point) {
   // The gap once more along the way: at the seam of two walls, a point of the one may lie behind the other.
-  const float gap = gap_m(point);
-  const glm::vec3 from = point.position_ws + gap * point.normal_ws;
+  const float gap = point.gap_m;
+  const glm::vec3 from = point.position + gap * point.normal_ws;
   if (light.type == static_cast<uint32_t>(pack::LightType::directional)) {
     if (!(glm::dot(point.normal_ws, light.direction_ws) < 0.0f)) return std::nullopt;
     return Sight{from, -light.direction_ws, gap, INFINITY};
   }
-  const glm::vec3 to_light = light.position_ws - point.position_ws;
+  const glm::vec3 to_light = light_position - point.position;
   const float distance_m = glm::length(to_light);
   if (!(glm::dot(point.normal_ws, to_light) > 0.0f) || !(distance_m < light.range_m)) return std::nullopt;
   if (!(glm::dot(light.direction_ws, -to_light) * light.cone_scale + light.cone_offset * distance_m > 0.0f))
     return std::nullopt;
-  const glm::vec3 way = light.position_ws - from;
+  const glm::vec3 way = light_position - from;
   const float length = glm::length(way);
-  return Sight{from, way, gap / length, std::max(0.0f, 1.0f - frame::shadow_near_m / length)};
+  return Sight{from, way, gap / length, std::max(0.0f, 1.0f - near_m / length)};
 }
 
 // Points of a disc, evenly (Vogel 1979), turned by `turn` radians.
@@ -252,11 +274,12 @@ struct Bundle {
 
 void RayScene::answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const {
   const uint32_t rays = query.radius_m > 0.0f ? kRaysToDisc : 1;
+  const glm::vec3 eye = query.eye_ws - origin_ws_, light = query.light.position_ws - origin_ws_;
   const auto lit = query.visibility;  // first how many rays of each point
   Bundle bundle;
   for (std::size_t i = first; i < end; ++i) {
     lit[i] = 0;
-    const auto to_middle = sight(query.light, query.points[i]);
+    const auto to_middle = sight(query.light, light, query.near_m, seen_from(eye, query.points[i]));
     if (!to_middle) continue;
     if (rays == 1) {
       bundle.add(*to_middle, i, scene_.get(), lit);
@@ -279,7 +302,12 @@ void RayScene::answer(const VisibilityQuery& query) const {
 }  // namespace
 
 VisibilitySource ray_traced_visibility(const pack::View& pack) {
-  return [scene = std::make_shared<const RayScene>(pack)](const VisibilityQuery& query) { scene->answer(query); };
+  const auto scene = std::make_shared<std::unique_ptr<const RayScene>>();
+  return [pack, scene](const VisibilityQuery& query) {
+    const glm::vec3 origin_ws = origin_near(query.eye_ws);
+    if (!*scene || (*scene)->origin_ws() != origin_ws) *scene = std::make_unique<const RayScene>(pack, origin_ws);
+    (*scene)->answer(query);
+  };
 }
 
 }  // namespace chandelier::truth

@@ -70,7 +70,7 @@ class Headless(PlayTest):
         self.assertNotEqual(named["name"], "")
         self.assertEqual(self.stats("--camera", named["name"])["camera"], named)
         numbers = self.stats("--camera", "1,2,3,1,2,-1,60")["camera"]
-        self.assertEqual(numbers["eye_ws"], [1, 2, 3])
+        self.assertEqual(numbers["eye_m"], [1, 2, 3])
         self.assertEqual(numbers["forward_ws"], [0, 0, -1])
         self.assertAlmostEqual(numbers["yfov_deg"], 60, 4)
         self.assert_fails(1, f"the pack has .*{named['name']}.*, none of that name \\(nowhere\\)", self.pack,

@@ -165,9 +165,10 @@ TEST_F(RecipesTest, RaysAreAskedAboutEveryVisiblePoint) {
     for (size_t i = 0; i < query.points.size(); ++i) {
       const SurfacePoint& point = query.points[i];
       const bool seen = point.normal_ws != glm::vec3(0.0f);
-      EXPECT_NEAR(point.position_ws.y, 0.0f, 1e-4f);
+      const glm::vec3 p = seen ? query.eye_ws + point.position : glm::vec3(0.0f);
+      EXPECT_NEAR(p.y, 0.0f, 1e-4f);
       EXPECT_NEAR(point.normal_ws.y, seen ? 1.0f : 0.0f, 1e-3f);
-      query.visibility[i] = point.position_ws.x > 0.0f ? 255 : 0;
+      query.visibility[i] = p.x > 0.0f ? 255 : 0;
     }
   };
   const Frame half = frame(renderer, settings);

@@ -36,7 +36,7 @@ pack::Light light_of(pack::LightType type, const glm::vec3& position_ws, const g
   light.position_ws = position_ws;
   light.direction_ws = glm::normalize(direction);
   light.intensity = intensity;
-  light.range_m = range_m;
+  light.range_m = light.nearest_caster_m = range_m;
   light.color = glm::vec3(1.0f);
   light.inner_cone_cos = 1.0f;
   light.outer_cone_cos = -1.0f;

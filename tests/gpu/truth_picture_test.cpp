@@ -39,7 +39,7 @@ bool is_blocked(const glm::dvec3& p, const glm::dvec3& light, const glm::dvec3& 
 std::vector<SurfacePoint> around(const SurfacePoint& point, const frame::FrameLight& light, float texel_m,
                                  float texels) {
   const bool is_sun = light.type == static_cast<uint32_t>(pack::LightType::directional);
-  const glm::vec3 way = is_sun ? light.direction_ws : point.position_ws - light.position_ws;
+  const glm::vec3 way = is_sun ? light.direction_ws : point.position - light.position_ws;
   const glm::vec3 a = glm::normalize(
       glm::cross(way, std::abs(way.y) < glm::length(way) * 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
   const glm::vec3 b = glm::normalize(glm::cross(way, a));
@@ -51,7 +51,7 @@ std::vector<SurfacePoint> around(const SurfacePoint& point, const frame::FrameLi
     const float slide = -glm::dot(point.normal_ws, across) / glm::dot(point.normal_ws, along);
     if (!(std::abs(slide) < 0.5f)) return {};
     const float lift_m = i & 8 ? texel_m : 0.0f;
-    points.push_back({point.position_ws + across + slide * along + lift_m * point.normal_ws, point.normal_ws});
+    points.push_back({point.position + across + slide * along + lift_m * point.normal_ws, point.normal_ws});
   }
   return points;
 }
@@ -75,7 +75,8 @@ class TruthPictureTest : public GpuTest {
     if (settings.recipe.filter == Filter::rays)
       settings.visibility = [this, rays = truth::ray_traced_visibility(pack.view())](const VisibilityQuery& query) {
         rays(query);
-        asked_ = {query.light, {query.points.begin(), query.points.end()}, rays};
+        asked_ = {query.light, query.near_m, {query.points.begin(), query.points.end()}, rays};
+        for (SurfacePoint& point : asked_.points) point.position += query.eye_ws;
       };
     Renderer renderer(device(), pack);
     renderer.draw(settings);
@@ -86,9 +87,9 @@ class TruthPictureTest : public GpuTest {
   bool is_edge(uint32_t pixel, const pack::Light& light) const {
     const SurfacePoint& point = asked_.points[pixel];
     if (point.normal_ws == glm::vec3(0.0f)) return false;
-    const auto near = around(point, asked_.light, texel_of(light, point.position_ws), 2.0f);
+    const auto near = around(point, asked_.light, texel_of(light, point.position), 2.0f);
     std::vector<uint8_t> visibility(near.size());
-    asked_.rays({asked_.light, 0.0f, near, visibility});
+    asked_.rays({asked_.light, asked_.near_m, 0.0f, glm::vec3(0.0f), near, visibility});
     const auto lit = static_cast<std::size_t>(std::count(visibility.begin(), visibility.end(), 255));
     return near.empty() || (lit != 0 && lit != near.size());
   }
@@ -110,7 +111,8 @@ class TruthPictureTest : public GpuTest {
   // What rays were last asked about.
   struct Asked {
     frame::FrameLight light;
-    std::vector<SurfacePoint> points;
+    float near_m;
+    std::vector<SurfacePoint> points;  // in the world
     VisibilitySource rays;
   } asked_;
 };

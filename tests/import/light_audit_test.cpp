@@ -74,7 +74,7 @@ struct Stage {
   Light& add_light(const glm::vec3& position, float intensity = 50) {
     Light light;
     light.name = "lamp " + std::to_string(scene.lights.size());
-    light.position_ws = position;
+    light.position_ws = glm::dvec3(position);
     light.intensity = intensity;
     scene.lights.push_back(light);
     return scene.lights.back();

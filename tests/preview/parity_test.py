@@ -185,7 +185,7 @@ class Parity(unittest.TestCase):
     def compare(self, scene, table, baked, pack, named, settings):
         expected = self.predict(pack, named, settings)
         eye = expected["camera"]
-        camera = clusters.Camera(eye["eye_ws"], eye["forward_ws"], eye["up_ws"], named["yfov_rad"], named["znear_m"], SIZE)
+        camera = clusters.Camera(eye["eye_m"], eye["forward_ws"], eye["up_ws"], named["yfov_rad"], named["znear_m"], SIZE)
         by_library = self.library.select(table, settings, camera)
         self.compare_centers(scene, baked, expected, by_library, settings)
         self.compare_bill(expected, by_library)

@@ -36,9 +36,9 @@ TEST(CameraTest, ClipSpaceHasXRightYDownAndReversedDepth) {
   camera.forward_ws = {0, 0, -1};
   camera.yfov_rad = 2.0f * std::atan(0.5f);
   camera.znear_m = 0.1f;
-  const glm::mat4 clip = clip_from_world(camera, 2.0f);
+  const glm::mat4 clip = clip_from_eye(camera, 2.0f);
   const auto project = [&](const glm::vec3& offset) {
-    const glm::vec4 p = clip * glm::vec4(camera.eye_ws + offset, 1.0f);
+    const glm::vec4 p = clip * glm::vec4(offset, 1.0f);
     return glm::vec3(p) / p.w;
   };
   // At 10 m the picture reaches 5 m up and 10 m to the right.
@@ -56,7 +56,7 @@ TEST(CameraTest, FrustumPlanesAgreeWithTheProjection) {
     const Camera camera = random_camera(random);
     const float aspect = uniform(random, 0.4f, 2.5f);
     const glm::vec3 p = camera.eye_ws + uniform3(random, -5, 5);
-    const glm::vec4 clip = clip_from_world(camera, aspect) * glm::vec4(p, 1.0f);
+    const glm::vec4 clip = clip_from_eye(camera, aspect) * glm::vec4(p - camera.eye_ws, 1.0f);
     const float margin = std::min({clip.w - std::abs(clip.x), clip.w - std::abs(clip.y), clip.w - clip.z});
     if (std::abs(margin) < 1e-3f) continue;  // too near to a side to say
     EXPECT_EQ(intersects(frustum_planes(camera, aspect), p, 0.0f), margin > 0.0f);

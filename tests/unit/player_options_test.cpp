@@ -115,8 +115,10 @@ TEST(PlayerOptions, FiltersBesideTruthAreTheOtherSides) {
 }
 
 TEST(PlayerOptions, CameraNumbers) {
-  const Camera camera = accepted("scene.chandelier --output a.png --camera 1,2,3,1,2,-7,90").camera.value();
-  EXPECT_EQ(camera.eye_ws, glm::vec3(1, 2, 3));
+  const FileCamera typed = accepted("scene.chandelier --output a.png --camera 1,2,3,1,2,-7,90").camera.value();
+  EXPECT_EQ(typed.eye_m, glm::dvec3(1, 2, 3));
+  const Camera camera = in_world(typed, {1, 0, -1});
+  EXPECT_EQ(camera.eye_ws, glm::vec3(0, 2, 4));
   EXPECT_EQ(camera.forward_ws, glm::vec3(0, 0, -1));
   EXPECT_NEAR(camera.yfov_rad, 1.5707963f, 1e-6f);
   EXPECT_EQ(accepted("scene.chandelier --output a.png --camera balcony,left").camera_name, "balcony,left");

@@ -17,6 +17,8 @@ namespace {
 
 using namespace test;
 
+constexpr float near_m = 0.01f;
+
 frame::FrameLight frame_light(const glm::vec3& position_ws, float range_m) {
   return {.position_ws = position_ws,
           .range_m = range_m,
@@ -35,7 +37,7 @@ frame::FrameLight sun(const glm::vec3& direction) {
 std::vector<uint8_t> ask(const pack::File& pack, const frame::FrameLight& light,
                          const std::vector<SurfacePoint>& points, float radius_m = 0.0f) {
   std::vector<uint8_t> visibility(points.size(), 99);
-  ray_traced_visibility(pack.view())({light, radius_m, points, visibility});
+  ray_traced_visibility(pack.view())({light, near_m, radius_m, glm::vec3(0.0f), points, visibility});
   return visibility;
 }
 uint8_t ask(const pack::File& pack, const frame::FrameLight& light, const SurfacePoint& point) {
@@ -69,7 +71,7 @@ constexpr glm::dvec3 box_min(-0.6, 0.8, -0.4), box_max(0.5, 1.3, 0.7);
 
 // Nothing within a millimetre of the shadow's edge.
 std::optional<bool> in_shadow_of_box(const SurfacePoint& point, const glm::dvec3& way, double end) {
-  const glm::dvec3 from(point.position_ws), slack(1e-3);
+  const glm::dvec3 from(point.position), slack(1e-3);
   const bool surely = meets_box(from, way, end, box_min + slack, box_max - slack);
   const bool perhaps = meets_box(from, way, end, box_min - slack, box_max + slack);
   return surely == perhaps ? std::optional(surely) : std::nullopt;
@@ -89,10 +91,10 @@ void expect_box_shadow(const frame::FrameLight& light, double end, Way way_from)
   const std::vector<uint8_t> found = ask(box_over_floor(), light, points);
   int lit = 0, dark = 0, edge = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto expected = in_shadow_of_box(points[i], way_from(glm::dvec3(points[i].position_ws)), end);
+    const auto expected = in_shadow_of_box(points[i], way_from(glm::dvec3(points[i].position)), end);
     ++(!expected ? edge : *expected ? dark : lit);
     if (!expected) continue;
-    EXPECT_EQ(found[i], *expected ? 0 : 255) << points[i].position_ws.x << " " << points[i].position_ws.z;
+    EXPECT_EQ(found[i], *expected ? 0 : 255) << points[i].position.x << " " << points[i].position.z;
   }
   EXPECT_GT(lit, 5000);
   EXPECT_GT(dark, 500);
@@ -174,7 +176,7 @@ TEST(RayTraced, LightFallsThroughWhatAnAlphaTestCutsOut) {
     const auto found = ask(pack, sun({0, -1, 0}), points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       // uv is (0, 0) at -x, -z, v growing with z; clamped outside.
-      const glm::vec2 uv = (glm::vec2(points[i].position_ws.x, points[i].position_ws.z) + 1.0f) / 2.0f;
+      const glm::vec2 uv = (glm::vec2(points[i].position.x, points[i].position.z) + 1.0f) / 2.0f;
       const glm::vec2 at = transform == uv_identity ? uv : glm::vec2(uv.y, uv.x + 0.5f);
       const bool cut_out = (at.x < 0.5f) == (at.y < 0.5f);
       EXPECT_EQ(found[i], cut_out ? 255 : 0) << uv.x << " " << uv.y;
@@ -246,7 +248,7 @@ void expect_penumbra(const frame::FrameLight& light, double radius_m, double hei
   const std::vector<uint8_t> found = ask(scene.open(), light, points, static_cast<float>(radius_m));
   double worst = 0, sum = 0;
   for (size_t i = 0; i < points.size(); ++i) {
-    const double off = found[i] / 255.0 - seen_part(-points[i].position_ws.x * edge_per_x / radius_m);
+    const double off = found[i] / 255.0 - seen_part(-points[i].position.x * edge_per_x / radius_m);
     worst = std::max(worst, std::abs(off));
     sum += off;
   }

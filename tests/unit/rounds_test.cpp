@@ -146,8 +146,8 @@ std::vector<frame::ShadowView> views_of(const pack::Light& light, LightList& lis
 }
 
 bool sees(const frame::ShadowView& view, const glm::vec3& p) {
-  const auto& c = view.clip_from_world;
-  const glm::vec4 clip = glm::mat4(c[0], c[1], c[2], c[3]) * glm::vec4(p, 1.0f);
+  const auto& c = view.clip_from_center;
+  const glm::vec4 clip = glm::mat4(c[0], c[1], c[2], c[3]) * glm::vec4(p - view.center_ws, 1.0f);
   return clip.w > 0.0f && std::abs(clip.x) <= clip.w * 1.0001f && std::abs(clip.y) <= clip.w * 1.0001f &&
          clip.z >= 0.0f && clip.z <= clip.w;
 }
@@ -166,12 +166,12 @@ TEST(ShadowViewsTest, CubeFacesFollowVulkansTable) {
             {{0.5f, -2, -1}, 3, {0.5f, 1}}, {{0.5f, -1, 2}, 4, {0.5f, 1}},    {{0.5f, -1, -2}, 5, {-0.5f, 1}}};
   for (const auto& row : table) {
     const frame::ShadowView& view = views[row.face];
-    const auto& c = view.clip_from_world;
-    const glm::vec4 clip = glm::mat4(c[0], c[1], c[2], c[3]) * glm::vec4(view.center_ws + row.r, 1.0f);
+    const auto& c = view.clip_from_center;
+    const glm::vec4 clip = glm::mat4(c[0], c[1], c[2], c[3]) * glm::vec4(row.r, 1.0f);
     EXPECT_EQ(view.layer, row.face);
     EXPECT_NEAR(clip.x / clip.w, row.st.x / 2, 1e-6) << "face " << row.face;
     EXPECT_NEAR(clip.y / clip.w, row.st.y / 2, 1e-6) << "face " << row.face;
-    EXPECT_NEAR(clip.z / clip.w, frame::shadow_near_m / 2, 1e-6);
+    EXPECT_NEAR(clip.z / clip.w, list.maps[0].near_m / 2, 1e-6);
   }
 }
 

@@ -17,14 +17,13 @@ bool reaches(const frame::ShadowView& view, const pack::BatchInstance& candidate
 }
 
 // cull_light_frustum.comp:inside
-bool inside(const glm::vec4& plane, const pack::BatchInstance& candidate) {
-  const glm::vec3 corner =
-      glm::mix(candidate.bounds_min_ws, candidate.bounds_max_ws, glm::greaterThan(glm::vec3(plane), glm::vec3(0.0f)));
+bool inside(const glm::vec4& plane, const glm::vec3& low, const glm::vec3& high) {
+  const glm::vec3 corner = glm::mix(low, high, glm::greaterThan(glm::vec3(plane), glm::vec3(0.0f)));
   return glm::dot(glm::vec3(plane), corner) + plane.w >= 0.0f;
 }
 
 std::array<glm::vec4, 6> planes_of(const frame::ShadowView& view) {
-  const auto& c = view.clip_from_world;
+  const auto& c = view.clip_from_center;
   const glm::mat4 rows = glm::transpose(glm::mat4(c[0], c[1], c[2], c[3]));
   return {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3] - rows[2], rows[2]};
 }
@@ -32,8 +31,9 @@ std::array<glm::vec4, 6> planes_of(const frame::ShadowView& view) {
 bool survives(const frame::ShadowView& view, const std::array<glm::vec4, 6>& planes,
               const pack::BatchInstance& candidate) {
   if (!reaches(view, candidate)) return false;
+  const glm::vec3 low = candidate.bounds_min_ws - view.center_ws, high = candidate.bounds_max_ws - view.center_ws;
   for (const glm::vec4& plane : planes)
-    if (!inside(plane, candidate)) return false;
+    if (!inside(plane, low, high)) return false;
   return true;
 }
 

@@ -17,7 +17,7 @@ void main() {
   float depth = texelFetch(depth_image, pixel, 0).r;
   if (depth == 0.0 || round.first_light == round.light_end) return;
   vec3 n = unpack_surface(texelFetch(surface_image, pixel, 0)).geometric_normal;
-  vec3 p = world_position(view, vec2(pixel) + 0.5, depth);
+  vec3 p = eye_position(view, vec2(pixel) + 0.5, depth);
   Receiver receiver = receiver_at(p, n);
   uint light = next_light(round.first_light);
   if (light < round.light_end) do {

@@ -11,7 +11,7 @@
 const float PENUMBRA_PER_RADIUS = 0.27;
 
 float pcf_radius(ShadowMap map, vec3 p) {
-  return max(SMOOTHING_TEXELS * texel_size(map, p), min(PENUMBRA_PER_RADIUS * map.filter_radius_m, 0.5 * distance(p, map.center_ws)));
+  return max(SMOOTHING_TEXELS * texel_size(map, p), min(PENUMBRA_PER_RADIUS * map.filter_radius_m, 0.5 * length(from_center(map, p))));
 }
 
 // Pixels of a block share what they found nearer than this part of the disc's radius, and less up to twice as far.
@@ -104,7 +104,7 @@ float pcf_visibility(ShadowMap map, Receiver r) {
   }
   float radius_m = pcf_radius(map, r.p);
   Lit own = cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m, DISC_TAPS);
-  return lit_of_block(r.p, facing_mates(r, map.center_ws - r.p), own, radius_m);
+  return lit_of_block(r.p, facing_mates(r, -from_center(map, r.p)), own, radius_m);
 }
 
 #endif

@@ -87,9 +87,9 @@ float lit_after(Search found, Receiver r, uint mates, Lit own, float radius_m) {
 // taps of the search are blocked, so are those of the narrower disc within, but for what lies between the taps.
 float cube_pcss(ShadowMap map, Receiver r) {
   float smoothing_m = SMOOTHING_TEXELS * texel_size(map, r.p);
-  float search_m = max(smoothing_m, min(map.filter_radius_m, 0.5 * distance(r.p, map.center_ws)));
+  float search_m = max(smoothing_m, min(map.filter_radius_m, 0.5 * length(from_center(map, r.p))));
   CubeDisc disc = cube_disc(map, r.p, r.n, r.axes, search_m);
-  uint mates = facing_mates(r, map.center_ws - r.p);
+  uint mates = facing_mates(r, -from_center(map, r.p));
   Search found = Search(search_m > smoothing_m, Blockers(0u, 0.0, 0u));
   if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, cube_blockers(disc, search_m), search_m);
   if (!subgroupAny(asks_taps(found))) return all_lit(found) ? 1.0 : 0.0;

@@ -56,16 +56,17 @@ struct CubeDisc {
   mat2x3 axes;    // unit vectors in the plane
   vec2 slope;     // how much farther away the plane is a metre along each axis, relative to the receiver's distance
   float cube;
+  float near_m;
 };
 
 // For taps up to radius_m from the receiver: they may fall on other faces than p does, at other slopes, which is why the
 // whole plane is moved by what the worst of them needs.
 CubeDisc cube_disc(ShadowMap map, vec3 p, vec3 n, mat2x3 axes, float radius_m) {
-  vec3 d = p - map.center_ws;
+  vec3 d = from_center(map, p);
   float raise_m = RAISE_TEXELS * 2.0 / view.face_size_px * (largest(abs(d)) + radius_m);
   float across = along_major_axis(d, n, raise_m + 1.4142136 * radius_m);
   d += n * (raise_m * sqrt(max(0.0, 1.0 - across * across)));
-  return CubeDisc(d, axes, d * axes / dot(d, d), float(map.cube));
+  return CubeDisc(d, axes, d * axes / dot(d, d), float(map.cube), map.near_m);
 }
 
 // A tap of the disc: where the plane lies there and its depth.
@@ -78,7 +79,7 @@ struct Tap {
 
 Tap cube_tap(CubeDisc disc, vec2 at_m) {
   vec3 at = disc.receiver + disc.axes * at_m;
-  float depth = SHADOW_NEAR_M / (largest(abs(at)) * (1.0 - DEPTH_ROUNDING));
+  float depth = disc.near_m / (largest(abs(at)) * (1.0 - DEPTH_ROUNDING));
   return Tap(at, depth, depth * max(1.0, 1.0 + dot(disc.slope, at_m)));
 }
 
@@ -90,10 +91,10 @@ struct CascadeDisc {
 };
 
 CascadeDisc cascade_disc(ShadowView cascade, vec3 p, vec3 n, mat2x3 axes) {
-  mat4 clip_from_world = mat4(cascade.clip_from_world[0], cascade.clip_from_world[1], cascade.clip_from_world[2],
-                              cascade.clip_from_world[3]);
-  vec3 receiver = vec3(clip_from_world * vec4(p + n * (RAISE_TEXELS * cascade.texel_m), 1.0));
-  return CascadeDisc(receiver, mat3(clip_from_world) * axes, float(cascade.layer));
+  mat4 clip_from_eye = mat4(cascade.clip_from_center[0], cascade.clip_from_center[1], cascade.clip_from_center[2],
+                            cascade.clip_from_center[3]);
+  vec3 receiver = vec3(clip_from_eye * vec4(p + n * (RAISE_TEXELS * cascade.texel_m), 1.0));
+  return CascadeDisc(receiver, mat3(clip_from_eye) * axes, float(cascade.layer));
 }
 
 Tap cascade_tap(CascadeDisc disc, vec2 at_m) {

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // One hard comparison against a shadow map. Expects in scope: `ShadowView views[]`, `ViewConstants view`,
 // `samplerCubeArrayShadow cubes` and `sampler2DArrayShadow layers` (the same depths; a comparison passes where the
-// reference is greater or equal: depth is reversed).
+// reference is greater or equal: depth is reversed). Points come as positions from the camera's eye, along the world's axes:
+// what is seen is exact there, however far from the world's origin.
 #ifndef CHANDELIER_SHADOW_LOOKUP_GLSL
 #define CHANDELIER_SHADOW_LOOKUP_GLSL
 
 // Float rounding of depth on its way through matrix, rasterizer and sampler, relative.
 const float DEPTH_ROUNDING = 1e-4;
+
+// A point as the centre of a map sees it.
+vec3 from_center(ShadowMap map, vec3 p) { return p + (view.eye_ws - map.center_ws); }
 
 float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 
@@ -20,26 +24,26 @@ float along_major_axis(vec3 d, vec3 n, float reach) {
 
 // Width of a texel of the map at p, metres. For a cube it grows with the distance along the face's axis.
 float texel_size(ShadowMap map, vec3 p) {
-  return 2.0 / view.face_size_px * largest(abs(p - map.center_ws));
+  return 2.0 / view.face_size_px * largest(abs(from_center(map, p)));
 }
 
 // Moves a point off its surface so far that its own plane, sampled `texels` away, cannot shadow it. A plane's depth changes
 // within a face by at most texels * texel_size * tan(slope against the face), which this displacement along n makes up for.
 vec3 offset_from_surface(ShadowMap map, vec3 p, vec3 n, float texels) {
   float reach = texels * texel_size(map, p);
-  float across = along_major_axis(p - map.center_ws, n, reach);
+  float across = along_major_axis(from_center(map, p), n, reach);
   return p + n * (reach * sqrt(max(0.0, 1.0 - across * across)));
 }
 
 // Is p lit, seen from the centre of a cube?
 float cube_lit(ShadowMap map, vec3 p) {
-  vec3 d = p - map.center_ws;
-  return texture(cubes, vec4(d, float(map.cube)), SHADOW_NEAR_M / (largest(abs(d)) * (1.0 - DEPTH_ROUNDING)));
+  vec3 d = from_center(map, p);
+  return texture(cubes, vec4(d, float(map.cube)), map.near_m / (largest(abs(d)) * (1.0 - DEPTH_ROUNDING)));
 }
 
 // The first cascade that reaches as far as p.
 uint cascade_at(ShadowMap map, vec3 p) {
-  float depth = dot(p - view.eye_ws, view.forward_ws);
+  float depth = dot(p, view.forward_ws);
   uint last = map.first_view + map.view_count - 1u;
   uint cascade = map.first_view;
   while (cascade < last && depth > views[cascade].far_m) ++cascade;
@@ -51,13 +55,13 @@ const float CASCADE_ROUNDING = 2e-6;
 
 // How much a cascade's depth grows a metre farther on along each axis: it points towards the light.
 vec3 depth_per_m(ShadowView cascade) {
-  return vec3(cascade.clip_from_world[0].z, cascade.clip_from_world[1].z, cascade.clip_from_world[2].z);
+  return vec3(cascade.clip_from_center[0].z, cascade.clip_from_center[1].z, cascade.clip_from_center[2].z);
 }
 
-// Is p lit in this cascade?
+// Is p lit in this cascade? Its centre is the eye.
 float cascade_lit(ShadowView cascade, vec3 p) {
-  vec4 clip = mat4(cascade.clip_from_world[0], cascade.clip_from_world[1], cascade.clip_from_world[2],
-                   cascade.clip_from_world[3]) * vec4(p, 1.0);
+  vec4 clip = mat4(cascade.clip_from_center[0], cascade.clip_from_center[1], cascade.clip_from_center[2],
+                   cascade.clip_from_center[3]) * vec4(p, 1.0);
   return texture(layers, vec4(clip.xy * 0.5 + 0.5, float(cascade.layer), clip.z + CASCADE_ROUNDING));
 }
 

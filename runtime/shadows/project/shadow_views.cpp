@@ -17,14 +17,13 @@ std::array<glm::vec4, 4> columns(const glm::vec4& x, const glm::vec4& y, const g
 // read the same values as if each had its own.
 frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t face, float texel_m) {
   const CubeFace axes = cube_face(face);
-  const auto row = [&](const glm::vec3& axis) { return glm::vec4(axis, -glm::dot(axis, map.center_ws)); };
-  return {
-      .clip_from_world = columns(row(axes.s), row(axes.t), glm::vec4(0, 0, 0, frame::shadow_near_m), row(axes.major)),
-      .center_ws = map.center_ws,
-      .range_m = map.range_m,
-      .layer = face,
-      .texel_m = texel_m,
-      .far_m = 0.0f};
+  return {.clip_from_center = columns(glm::vec4(axes.s, 0), glm::vec4(axes.t, 0), glm::vec4(0, 0, 0, map.near_m),
+                                      glm::vec4(axes.major, 0)),
+          .center_ws = map.center_ws,
+          .range_m = map.range_m,
+          .layer = face,
+          .texel_m = texel_m,
+          .far_m = 0.0f};
 }
 
 // How far beyond a receiver a filter reads, per metre from the map's centre: a few texels, and as much of the area
@@ -84,7 +83,7 @@ std::array<float, frame::cascade_count + 1> split_depths(const Camera& camera, c
 }
 
 struct Sphere {
-  glm::vec3 center_ws;
+  glm::vec3 center;  // from the eye
   float radius_m;
 };
 
@@ -94,38 +93,41 @@ Sphere slice_sphere(const Camera& camera, float aspect, float near_m, float far_
   const float corner2 = y * y * (1.0f + aspect * aspect);  // squared half diagonal at one metre
   const float middle = std::min(far_m, 0.5f * (near_m + far_m) * (1.0f + corner2));
   const float radius = std::sqrt(corner2 * far_m * far_m + (far_m - middle) * (far_m - middle));
-  return {camera.eye_ws + glm::normalize(camera.forward_ws) * middle, radius};
+  return {glm::normalize(camera.forward_ws) * middle, radius};
 }
 
-frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& direction, const Bounds& bounds, uint32_t cascade,
-                               float far_m, uint32_t face_size_px) {
+frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& eye_ws, const glm::vec3& direction,
+                               const Bounds& bounds, uint32_t cascade, float far_m, uint32_t face_size_px) {
   const CameraAxes axes = axes_of({.forward_ws = direction});
   // Six texels of margin on each side, for snapping, normal offset and filter.
   const float texels = static_cast<float>(std::max(face_size_px, 16u) - 12u);
   const float texel_m = 2.0f * sphere.radius_m / texels;
+  // To texels of the world, so that edges stand still when the camera moves; then seen from the eye.
   const auto snapped = [&](const glm::vec3& axis) {
-    return std::floor(glm::dot(axis, sphere.center_ws) / texel_m) * texel_m;
+    const double eye_m = glm::dot(glm::dvec3(axis), glm::dvec3(eye_ws));
+    const double center_m = eye_m + glm::dot(glm::dvec3(axis), glm::dvec3(sphere.center));
+    return static_cast<float>(std::floor(center_m / texel_m) * texel_m - eye_m);
   };
   float nearest = INFINITY;  // along the light's way, over the whole scene: casters may stand outside the view
   float farthest = -INFINITY;
   for (const glm::vec3& corner : corners(bounds)) {
-    nearest = std::min(nearest, glm::dot(corner, axes.forward));
-    farthest = std::max(farthest, glm::dot(corner, axes.forward));
+    nearest = std::min(nearest, glm::dot(corner - eye_ws, axes.forward));
+    farthest = std::max(farthest, glm::dot(corner - eye_ws, axes.forward));
   }
   const float margin = 0.01f + 0.001f * (farthest - nearest);
   nearest -= margin;
   farthest += margin;
   const float scale = 2.0f / (texel_m * static_cast<float>(face_size_px));
   const float depth_scale = 1.0f / (farthest - nearest);
-  return {
-      .clip_from_world = columns(glm::vec4(axes.right * scale, -snapped(axes.right) * scale),
-                                 glm::vec4(-axes.up * scale, snapped(axes.up) * scale),
-                                 glm::vec4(-axes.forward * depth_scale, farthest * depth_scale), glm::vec4(0, 0, 0, 1)),
-      .center_ws = glm::vec3(0.0f),
-      .range_m = 0.0f,
-      .layer = cascade,
-      .texel_m = texel_m,
-      .far_m = far_m};
+  return {.clip_from_center =
+              columns(glm::vec4(axes.right * scale, -snapped(axes.right) * scale),
+                      glm::vec4(-axes.up * scale, snapped(axes.up) * scale),
+                      glm::vec4(-axes.forward * depth_scale, farthest * depth_scale), glm::vec4(0, 0, 0, 1)),
+          .center_ws = eye_ws,
+          .range_m = 0.0f,
+          .layer = cascade,
+          .texel_m = texel_m,
+          .far_m = far_m};
 }
 
 void project_cascades(const LightList& list, uint32_t map_number, const Camera& camera, float aspect,
@@ -133,8 +135,8 @@ void project_cascades(const LightList& list, uint32_t map_number, const Camera& 
   const glm::vec3 direction = list.map_direction_ws[map_number];
   const auto splits = split_depths(camera, bounds);
   for (uint32_t i = 0; i < frame::cascade_count; ++i)
-    views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), direction, bounds, i,
-                                 splits[i + 1], face_size_px));
+    views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), camera.eye_ws, direction,
+                                 bounds, i, splits[i + 1], face_size_px));
 }
 
 }  // namespace

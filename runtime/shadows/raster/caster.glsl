@@ -25,9 +25,9 @@ layout(location = 2) flat out float alpha_cutoff;
 void main() {
   CasterDraw draw = draws[gl_InstanceIndex];
   ShadowView view = views[draw.shadow_view];
-  vec3 p = to_world(instances[draw.instance].world_from_local, position_ls);
-  gl_Position = mat4(view.clip_from_world[0], view.clip_from_world[1], view.clip_from_world[2], view.clip_from_world[3]) *
-                vec4(p, 1.0);
+  vec3 p = position_from(view.center_ws, instances[draw.instance].world_from_local, position_ls);
+  gl_Position = mat4(view.clip_from_center[0], view.clip_from_center[1], view.clip_from_center[2],
+                     view.clip_from_center[3]) * vec4(p, 1.0);
   gl_Layer = int(view.layer);
 #ifdef MASKED
   Material m = materials[draw.material];
