@@ -187,11 +187,6 @@ std::vector<glm::dvec3> directions_of(const pack::Light& light, int count) {
 
 namespace {
 
-bool casts(const pack::Contents& pack, const pack::BatchInstance& draw) {
-  return pack.instances[draw.instance].shadowless == 0 &&
-         pack.materials[pack.batches[draw.batch].material].shadowless == 0;
-}
-
 /// From the point to the farthest of the box, beyond which no triangle in it can be.
 double farthest_of_box(const glm::dvec3& point, const glm::vec3& low, const glm::vec3& high) {
   return glm::length(glm::max(glm::abs(point - glm::dvec3(low)), glm::abs(point - glm::dvec3(high))));
@@ -205,7 +200,7 @@ void visit_casters_near(const pack::Contents& pack, const glm::dvec3& point, con
     return is_near_box(point, nearest, low, high);
   };
   const auto visit_caster = [&](const pack::BatchInstance& draw) {
-    if (casts(pack, draw)) visit(draw);
+    if (pack::throws_shadow(pack, draw)) visit(draw);
     return false;
   };
   visit_batches(pack, meets, visit_caster);

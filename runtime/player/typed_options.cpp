@@ -89,7 +89,8 @@ void declare_output(CLI::App& app, Typed& typed) {
 
 void declare_view(CLI::App& app, Typed& typed) {
   app.add_option("--camera", typed.camera,
-                 "A camera of the pack, or eye, target, vertical angle [the pack's first, else sees it all]")
+                 "A camera of the pack, or eye and target in the glTF's coordinates, vertical angle [the pack's first, else "
+                 "sees it all]")
       ->type_name("NAME|ex,ey,ez,tx,ty,tz,fov_deg")
       ->group("View");
   app.add_option("--ambient", typed.ambient, "Radiance from everywhere")

@@ -173,11 +173,13 @@ struct Seen {
   float gap_m;
 };
 
-// How far points may lie behind what the camera sees: they come from a depth of 32 bits (README.md).
+// How far points may lie behind what the camera sees: they come from a depth of 32 bits, and their sums are floats
+// (README.md).
 Seen seen_from(const glm::vec3& eye, const SurfacePoint& point) {
   const glm::vec3 position = eye + point.position, p = glm::abs(position);
-  const float by_distance = 5.0f * std::min(1.0f, glm::length(point.position));
-  return {position, point.normal_ws, 1e-5f * std::max(by_distance, std::max(p.x, std::max(p.y, p.z)))};
+  const float distance = glm::length(point.position);
+  const float of_depth = 1e-5f * std::max(5.0f * std::min(1.0f, distance), distance);
+  return {position, point.normal_ws, std::max(of_depth, 1e-6f * std::max(p.x, std::max(p.y, p.z)))};
 }
 
 // A way that is clear where the light is seen: from + t · way, t from `begin` to `end`.
