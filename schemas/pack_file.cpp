@@ -17,6 +17,7 @@
 #include <system_error>
 #include <utility>
 
+#include "file_kind.h"
 #include "pack_checks.h"
 #include "pack_codec.h"
 #include "parallel.h"
@@ -151,12 +152,16 @@ Mapping map_file(const std::filesystem::path& path, Hold hold) {
 }
 
 std::string header_fault(const FileHeader& header, std::uint64_t size) {
-  if (std::memcmp(header.magic.data(), magic.data(), magic.size()) != 0) return "not a Chandelier pack (wrong magic)";
-  if (header.version != schema_version) {
-    return "a pack of another version, bake it again" + in_parentheses(header.version);
+  const std::string versions =
+      "(version " + std::to_string(header.version) + ", this program reads " + std::to_string(schema_version) + ")";
+  if (header.version < schema_version) return "a pack of an older chandelier-bake: bake it again " + versions;
+  if (header.version > schema_version) {
+    return "a pack of a newer chandelier-bake: show it with the programs that came with that, or bake it again " +
+           versions;
   }
   if (header.schema_hash != schema_hash) {
-    return "a pack of another layout, bake it again" + in_parentheses(header.schema_hash);
+    return "a pack of another build of chandelier-bake, whose layout is another: bake it again" +
+           in_parentheses(header.schema_hash);
   }
   if (header.file_bytes != size) {
     return "header.file_bytes: " + std::to_string(header.file_bytes) + " where the file has " + std::to_string(size);
@@ -330,6 +335,7 @@ Mapping::~Mapping() {
 File::File(const std::filesystem::path& path, std::size_t most_threads, Hold hold) : file_(map_file(path, hold)) {
   const std::span<const std::byte> bytes = file_.bytes();
   const FileHeader& header = *reinterpret_cast<const FileHeader*>(bytes.data());
+  if (std::memcmp(header.magic.data(), magic.data(), magic.size()) != 0) fail(path, no_pack(path, bytes));
   if (std::string line = header_fault(header, bytes.size()); !line.empty()) fail(path, line);
   table_ = {reinterpret_cast<const SectionEntry*>(bytes.data() + sizeof(FileHeader)), header.section_count};
   if (XXH3_64bits(table_.data(), table_.size_bytes()) != header.table_checksum) {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <set>
 
+#include "file_kind.h"
 #include "gltf_lint.h"
 #include "meshopt.h"
 
@@ -23,6 +24,16 @@ std::uint32_t u32_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
 struct Chunks {
   std::span<const std::uint8_t> json, bin;
 };
+
+/// One that is known as something else need not be read as JSON to say so.
+void refuse_other_kinds(std::span<const std::uint8_t> bytes, const std::string& file) {
+  const pack::KnownFile is = pack::known_file(file, std::as_bytes(bytes));
+  if (is.kind == pack::FileKind::pack) {
+    fail(file, "is not a glTF: it is a Chandelier pack already; chandelier-play shows it, chandelier-inspect lists it");
+  }
+  if (is.kind != pack::FileKind::other) return;
+  fail(file, "is not a glTF: it is " + is.name + (is.advice.empty() ? "" : "; " + is.advice));
+}
 
 /// Splits a .glb; a .gltf is all JSON.
 Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& file, Warnings& warnings) {
@@ -282,6 +293,7 @@ Gltf read_gltf(const std::filesystem::path& path, Warnings& warnings) {
   gltf.file = path.string();
   gltf.files_read = {path};
   gltf.container = map_file(path, gltf.file);
+  refuse_other_kinds(gltf.container.bytes, gltf.file);
   const Chunks chunks = split_container(gltf.container.bytes, gltf.file, warnings);
   if (chunks.json.empty()) fail(gltf.file, "is not a glTF: it is empty");
   gltf.json = parse_json(chunks.json, gltf.file);

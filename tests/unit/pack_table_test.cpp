@@ -52,8 +52,12 @@ constexpr std::uint64_t huge = std::uint64_t{1} << 63;
 // Table: 0 bake_info, 1 strings, 2 positions (7 of 12 bytes), …, 36 skin_vertices: all of them.
 constexpr std::size_t last = section_infos.size() - 1;
 const Lie lies[] = {
-    {"Version", [](Parts& p) { p.header.version = 1; }, "a pack of another version, bake it again (1)"},
-    {"Layout", [](Parts& p) { p.header.schema_hash = 5; }, "a pack of another layout, bake it again (5)"},
+    {"OlderVersion", [](Parts& p) { p.header.version = 1; },
+     "a pack of an older chandelier-bake: bake it again (version 1, "},
+    {"NewerVersion", [](Parts& p) { ++p.header.version; },
+     "a pack of a newer chandelier-bake: show it with the programs that"},
+    {"Layout", [](Parts& p) { p.header.schema_hash = 5; },
+     "a pack of another build of chandelier-bake, whose layout is"},
     {"FileSize", [](Parts& p) { --p.header.file_bytes; }, "header.file_bytes: "},
     {"TooManySections", [](Parts& p) { p.header.section_count = 257; }, "header.section_count: 257 is above 256"},
     {"SectionsPastTheEnd", [](Parts& p) { p.header.section_count = 256; }, "header.section_count: 256 do not fit"},
