@@ -11,6 +11,11 @@ namespace chandelier::gpu {
 namespace {
 
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+constexpr const char* no_loader =
+    "no Vulkan loader (libvulkan.so.1) on this machine; on Debian: apt install libvulkan1 mesa-vulkan-drivers";
+constexpr const char* no_driver =
+    "no Vulkan driver on this machine; on Debian: apt install mesa-vulkan-drivers, which has one for most GPUs and one "
+    "that needs none (NVIDIA's own is nvidia-driver)";
 
 struct Instance {
   VkInstance handle = VK_NULL_HANDLE;
@@ -47,7 +52,7 @@ bool layer_present(const char* name) {
 }
 
 VkInstance create_instance(const DeviceOptions& options, std::vector<std::string>* messages) {
-  if (volkInitialize() != VK_SUCCESS) throw Error("no Vulkan loader (libvulkan.so.1) on this machine");
+  if (volkInitialize() != VK_SUCCESS) throw Error(no_loader);
   if (volkGetInstanceVersion() < VK_API_VERSION_1_3) throw Error("the Vulkan loader is older than 1.3");
   if (options.validation && !layer_present(validation_layer))
     throw Error("the validation layer is not installed (VK_LAYER_KHRONOS_validation)");
@@ -73,7 +78,9 @@ VkInstance create_instance(const DeviceOptions& options, std::vector<std::string
   info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   VkInstance instance = VK_NULL_HANDLE;
-  check(vkCreateInstance(&info, nullptr, &instance), "vkCreateInstance");
+  const VkResult made = vkCreateInstance(&info, nullptr, &instance);
+  if (made == VK_ERROR_INCOMPATIBLE_DRIVER) throw Error(no_driver);  // the loader found none
+  check(made, "vkCreateInstance");
   volkLoadInstance(instance);
   return instance;
 }
@@ -204,7 +211,7 @@ VkPhysicalDevice choose(VkInstance instance, const std::string& wanted) {
     }
   }
   if (best) return best;
-  if (devices.empty()) throw Error("no Vulkan device on this machine");
+  if (devices.empty()) throw Error(no_driver);
   throw Error("no fitting Vulkan device" + (wanted.empty() ? std::string() : " called '" + wanted + "'") +
               " (there is" + reasons.substr(1) + ")");
 }
