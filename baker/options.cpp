@@ -151,7 +151,7 @@ void add_build_options(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<0, 1024>, ""));
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "No progress and no summary; warnings and errors stay");
-  app.add_flag("-v,--verbose", options.verbose, "A line for each pass")->excludes(quiet);
+  app.add_flag("-v,--verbose", options.verbose, "Say how long each pass took")->excludes(quiet);
 }
 
 /// The options that shape the pack, as they were given or by default.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress: a thread rewrites the line, so that the seconds run while a pass is busy.
+// Progress: a thread rewrites the line, so that the seconds run while a pass is busy, and tells what came before it.
 #include "progress.h"
 
 #include <fmt/core.h>
@@ -11,15 +11,18 @@ namespace {
 
 constexpr std::size_t kMostColumns = 60;
 constexpr const char* kEraseLine = "\r\x1b[K";
+constexpr double kQuick_ms = 10;  // less shows as 0.00 s
+constexpr double kLong_s = 0.1;   // who watches may learn that another pass is running
 
 }  // namespace
 
 Progress::Progress(Shown shown, double patience_s, std::FILE* out) : shown_(shown), patience_s_(patience_s), out_(out) {
-  if (shown != Shown::rewritten) return;
+  if (shown != Shown::rewritten && shown != Shown::all_passes) return;
   ticker_ = std::jthread([this](const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stopped_.wait_for(lock, stop, std::chrono::milliseconds(200), [&] { return stop.stop_requested(); })) {
-      if (seconds() > patience_s_ && !what_.empty()) rewrite();
+      if (shown_ == Shown::all_passes && seconds() > pass_began_s_ + kLong_s) tell_quick_passes();
+      if (shown_ == Shown::rewritten && seconds() > patience_s_ && !what_.empty()) rewrite();
     }
   });
 }
@@ -28,16 +31,42 @@ Progress::~Progress() {
   if (!ticker_.joinable()) return;
   ticker_.request_stop();
   ticker_.join();
-  clear();
+  const std::lock_guard lock(mutex_);
+  tell_quick_passes();
+  erase();
 }
 
 void Progress::begin(const std::string& pass) const {
   next(pass);
+  const std::lock_guard lock(mutex_);
+  pass_began_s_ = seconds();
 }
 
 void Progress::end(const std::string& pass, double ms) const {
-  const bool told = shown_ == Shown::all_passes || (shown_ == Shown::slow_passes && ms > 1000 * patience_s_);
-  if (told) fmt::print(out_, "chandelier-bake: {:.2f} s: {} took {:.2f} s\n", seconds(), pass, ms / 1000);
+  const std::lock_guard lock(mutex_);
+  if (shown_ == Shown::slow_passes && ms > 1000 * patience_s_) tell(seconds(), pass, ms);
+  if (shown_ != Shown::all_passes) return;
+  ++passes_ended_;
+  if (ms < kQuick_ms) {
+    quick_passes_ += (quick_passes_.empty() ? "" : ", ") + pass;
+    quick_ms_ += ms;
+    quick_ended_s_ = seconds();
+    return;
+  }
+  tell_quick_passes();
+  tell(seconds(), pass, ms);
+}
+
+void Progress::tell(double ended_s, const std::string& passes, double ms) const {
+  fmt::print(out_, "chandelier-bake: {:7.2f} s: {:6.2f} s for {}\n", ended_s, ms / 1000, passes);
+  std::fflush(out_);
+}
+
+void Progress::tell_quick_passes() const {
+  if (quick_passes_.empty()) return;
+  tell(quick_ended_s_, quick_passes_, quick_ms_);
+  quick_passes_.clear();
+  quick_ms_ = 0;
 }
 
 void Progress::next(const std::string& what) const {
@@ -54,6 +83,13 @@ void Progress::advance(std::size_t done, std::size_t total) const {
 
 void Progress::clear() const {
   const std::lock_guard lock(mutex_);
+  tell_quick_passes();
+  if (passes_ended_ > 0) fmt::print(out_, "chandelier-bake: {:7.2f} s for all {} passes\n", seconds(), passes_ended_);
+  passes_ended_ = 0;
+  erase();
+}
+
+void Progress::erase() const {
   if (visible_) fmt::print(out_, "{}", kEraseLine);
   std::fflush(out_);
   visible_ = false;

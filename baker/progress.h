@@ -17,7 +17,7 @@ class Progress {
   enum class Shown {
     nothing,
     slow_passes,  // a line after each pass that took longer than patience
-    all_passes,   // a line after each pass
+    all_passes,   // a line after each pass; passes that took next to nothing share one, told when another takes longer
     rewritten,    // one line of a terminal, which is never left behind
   };
 
@@ -40,11 +40,15 @@ class Progress {
   /// How far the pass is. Any thread may say so.
   void advance(std::size_t done, std::size_t total) const;
 
-  /// Takes the rewritten line away, before something else is said on stderr.
+  /// All is done: takes the rewritten line away, or tells what is untold and the whole time.
   void clear() const;
 
  private:
-  void rewrite() const;  // with mutex_ held
+  // With mutex_ held.
+  void rewrite() const;
+  void erase() const;
+  void tell(double ended_s, const std::string& passes, double ms) const;
+  void tell_quick_passes() const;
 
   Shown shown_;
   double patience_s_;
@@ -54,8 +58,13 @@ class Progress {
   mutable std::string what_;
   mutable std::size_t done_ = 0, total_ = 0;
   mutable bool visible_ = false;
+  mutable std::string quick_passes_;  // that ended and are untold
+  mutable double quick_ms_ = 0;
+  mutable double quick_ended_s_ = 0;
+  mutable std::size_t passes_ended_ = 0;
+  mutable double pass_began_s_ = 0;
   std::condition_variable_any stopped_;
-  std::jthread ticker_;  // only at a terminal, so that the seconds run
+  std::jthread ticker_;  // at a terminal, so that the seconds run, and where all passes are told
 };
 
 }  // namespace chandelier::baker

@@ -18,7 +18,7 @@ from run_in_blender import HERE, SKIPPED, SOURCE, blender, environment
 BIN = pathlib.Path(os.environ.get("CHANDELIER_BIN", SOURCE / "build" / "bin"))
 SIZE = (1280, 900)
 PATIENCE_S = 600
-SLOW_BAKE = "#!/bin/sh\necho 'chandelier-bake: 0.10 s: import took 0.10 s' >&2\nexec sleep 60\n"
+SLOW_BAKE = "#!/bin/sh\necho 'chandelier-bake:    0.10 s:   0.10 s for import' >&2\nexec sleep 60\n"
 
 
 class Window(unittest.TestCase):

@@ -28,7 +28,7 @@ def without_emptiness(done):
 
 def without_slow_passes(done):
     """The process without the lines that a slow machine adds: each pass that took more than a second."""
-    done.stderr = re.sub(r"^chandelier-bake: \d+\.\d\d s: .* took \d+\.\d\d s\n", "", done.stderr, flags=re.MULTILINE)
+    done.stderr = re.sub(r"^chandelier-bake: +\d+\.\d\d s: +\d+\.\d\d s for .*\n", "", done.stderr, flags=re.MULTILINE)
     return done
 
 

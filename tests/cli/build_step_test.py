@@ -126,12 +126,19 @@ class Usage(BakeTool):
 
 
 class ProgressLines(BakeTool):
-    def test_verbose_is_a_line_for_each_pass(self):
+    def test_verbose_names_each_pass_and_the_time_that_it_took(self):
         done = self.run_bake(*self.room(), "-o", self.pack, "--verbose")
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = done.stderr.splitlines()
-        self.assertRegex(lines[0], r"^chandelier-bake: \d+\.\d\d s: import took \d+\.\d\d s$")
-        self.assertRegex(lines[-1], r"^chandelier-bake: \d+\.\d\d s: sync took \d+\.\d\d s$")
+        told = [re.match(r"chandelier-bake: ( *\d+\.\d\d) s: ( *\d+\.\d\d) s for ([\w, ]+)$", line) for line in lines[:-1]]
+        passes = [name for line in told for name in line[3].split(", ")]
+        self.assertEqual((passes[0], passes[-1]), ("import", "sync"))
+        self.assertEqual(len(set(passes)), len(passes))
+        self.assertRegex(lines[-1], rf"^chandelier-bake: ( *\d+\.\d\d) s for all {len(passes)} passes$")
+        self.assertEqual(len({(len(line[1]), len(line[2])) for line in told}), 1, "times are below each other")
+        # What took nothing has no line of its own: none stands beside another such.
+        nothing = [float(line[2]) < 0.01 and "," not in line[3] for line in told]
+        self.assertNotIn((True, True), zip(nothing, nothing[1:]))
 
     def test_verbose_and_quiet_is_wrong_usage(self):
         self.assertEqual(self.run_bake(*self.room(), "-o", self.pack, "--verbose", "--quiet").returncode, 2)

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <regex>
 #include <string>
 #include <thread>
 
@@ -35,10 +36,16 @@ std::string shown_after_passes(Shown shown, double patience_s) {
   const Out out(std::tmpfile());
   {
     const Progress progress(shown, patience_s, out.get());
-    progress.begin("import");
-    progress.end("import", 1200);
-    progress.begin("batches");
-    progress.end("batches", 10);
+    const auto pass = [&](const char* name, double ms) {
+      progress.begin(name);
+      progress.end(name, ms);
+    };
+    pass("import", 1200);
+    pass("materials", 1);
+    pass("animation", 2);
+    pass("batches", 20);
+    pass("sync", 0);
+    progress.clear();
   }
   std::fflush(out.get());
   return shown_in(out);
@@ -65,15 +72,30 @@ TEST(Progress, ATerminalIsUntouchedWhileNobodyWonders) {
 
 TEST(Progress, SlowPassesHaveALineEach) {
   const std::string shown = shown_after_passes(Shown::slow_passes, 1);
-  EXPECT_NE(shown.find("s: import took 1.20 s\n"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("s:   1.20 s for import\n"), std::string::npos) << shown;
   EXPECT_EQ(shown.find("batches"), std::string::npos) << shown;
   EXPECT_EQ(shown_after_passes(Shown::slow_passes, never_s), "");
 }
 
-TEST(Progress, AllPassesHaveALineEachIfAsked) {
+TEST(Progress, AllPassesAreToldIfAskedAndQuickOnesShareALine) {
   const std::string shown = shown_after_passes(Shown::all_passes, never_s);
-  EXPECT_NE(shown.find("s: import took 1.20 s\n"), std::string::npos) << shown;
-  EXPECT_NE(shown.find("s: batches took 0.01 s\n"), std::string::npos) << shown;
+  const std::regex expected(
+      "chandelier-bake: +[0-9.]+ s:   1\\.20 s for import\n"
+      "chandelier-bake: +[0-9.]+ s:   0\\.00 s for materials, animation\n"
+      "chandelier-bake: +[0-9.]+ s:   0\\.02 s for batches\n"
+      "chandelier-bake: +[0-9.]+ s:   0\\.00 s for sync\n"
+      "chandelier-bake: +[0-9.]+ s for all 5 passes\n");
+  EXPECT_TRUE(std::regex_match(shown, expected)) << shown;
+}
+
+TEST(Progress, QuickPassesAreToldWhileTheNextOneTakesLong) {
+  const Out out(std::tmpfile());
+  const Progress progress(Shown::all_passes, never_s, out.get());
+  progress.begin("materials");
+  progress.end("materials", 1);
+  progress.begin("batches");
+  const auto is_shown = [&] { return shown_in(out).find("s for materials\n") != std::string::npos; };
+  while (!is_shown()) std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the test's time limit ends it
 }
 
 TEST(Progress, QuietIsQuiet) {

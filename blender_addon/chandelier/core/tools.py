@@ -17,7 +17,7 @@ PASSES = {
     "import": 6, "recentre": 1, "glass": 1, "materials": 1, "animation": 1, "find_geometry": 0, "normals": 1, "tangents": 2, "quantize": 5,
     "weld": 2, "clean": 3, "shells": 4, "batches": 12, "instances": 1, "batch_bvh": 1, "instance_bvh": 1, "triangle_bvh": 10, "voxels": 5,
     "keep_geometry": 1, "images": 20, "lights": 1, "light_bvh": 1, "light_audit": 2, "write": 13, "check": 4, "sync": 3}
-PASS_LINE = re.compile(r"^chandelier-bake: [\d.]+ s: (.+) took [\d.]+ s$")
+PASS_LINE = re.compile(r"^chandelier-bake: +[\d.]+ s: +[\d.]+ s for (?:.+, )?(\w+)$")  # the last of passes that share a line
 TOLD_LINE = re.compile(r"^chandelier-\w+: (error|warning): (.*)$")
 PATIENCE_S = 3  # of a program that was told to end
 
