@@ -30,7 +30,8 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
           .ambient = settings.ambient,
           .size_px = {static_cast<float>(settings.width), static_cast<float>(settings.height)},
           .face_size_px = static_cast<float>(settings.recipe.face_size_px),
-          .z_far_m = settings.recipe.z_far_m};
+          .z_far_m = settings.recipe.z_far_m,
+          .headlight = settings.headlight};
 }
 
 // LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved. But the
@@ -55,6 +56,7 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
   const float aspect = aspect_of(settings);
   const SelectAids aids{.surroundings = surroundings,
                         .ambient = settings.ambient,
+                        .headlight = settings.headlight,
                         .exposure_ev = settings.exposure_ev,
                         .previous_centers = settings.previous_centers,
                         .centers = settings.centers,

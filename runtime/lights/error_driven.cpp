@@ -31,6 +31,7 @@ SampleSettings sample_grid(size_t lights, const SampledView& view) {
   return {.columns = static_cast<uint32_t>(rows * 16.0f / 9.0f),
           .rows = static_cast<uint32_t>(rows),
           .ambient = view.ambient,
+          .headlight = view.headlight,
           .exposure_ev = view.exposure_ev};
 }
 

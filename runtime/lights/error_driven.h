@@ -19,6 +19,7 @@ struct SampledView {
   Camera camera;
   float aspect = 1.0f;
   float ambient = 0.0f;
+  float headlight = 0.0f;
   std::optional<float> exposure_ev;
 
   bool operator==(const SampledView&) const = default;

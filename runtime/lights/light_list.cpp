@@ -257,7 +257,8 @@ LightList select_lights(std::span<const pack::Light> lights, const Recipe& recip
                                                                    : clustered(lights, in_view, recipe, camera, aids);
   if (recipe.select == Select::error_driven)
     members = members_by_error(lights, in_view, std::move(members), recipe,
-                               {camera, aspect, aids.ambient, aids.exposure_ev}, aids.surroundings->by_error());
+                               {camera, aspect, aids.ambient, aids.headlight, aids.exposure_ev},
+                               aids.surroundings->by_error());
   if (!aids.centers.empty()) hold_centers(lights, aids.centers, members);
   LightList list = make_list(lights, std::move(members), recipe.z_far_m);
   for (const uint32_t i : shadowless) list.shadowless.push_back(frame_light(lights[i]));
@@ -314,8 +315,8 @@ double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& 
   for (size_t i = 0; i < list.lights.size(); ++i)
     members.push_back({index_in(in_view, list.pack_light[i]), index_in(in_view, list.center[i]),
                        added_radius_m(list, list.lights[i].map), list.share[i]});
-  return aids.surroundings->by_error().expected_rmse(in_view, members, {camera, aspect, aids.ambient, aids.exposure_ev},
-                                                     recipe);
+  return aids.surroundings->by_error().expected_rmse(
+      in_view, members, {camera, aspect, aids.ambient, aids.headlight, aids.exposure_ev}, recipe);
 }
 
 }  // namespace chandelier

@@ -36,6 +36,7 @@ struct LightList {
 struct SelectAids {
   Surroundings* surroundings = nullptr;  // of the same pack; needed for walls, and to select by error
   float ambient = 0.0f;                  // how bright the picture will be, to select by error
+  float headlight = 0.0f;
   std::optional<float> exposure_ev;
   /// Each light's centre a frame ago, pack::none where it was not in view, to which the recipe's stability clings; or
   /// empty.

@@ -25,12 +25,13 @@ float scattered(uint32_t x) {
   return static_cast<float>((x ^ x >> 15) >> 8) * 0x1p-24f;
 }
 
-// Illuminance at a point and the way to the light: shading/shade.comp:incoming, shading/brdf.glsl:distance_falloff.
-struct Incoming {
-  glm::vec3 illuminance;
-  glm::vec3 to_light;
-};
+float luminance(const glm::vec3& radiance) {
+  return glm::dot(radiance, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+}
 
+}  // namespace
+
+// shading/shade.comp:unshadowed, shading/brdf.glsl:distance_falloff.
 Incoming incoming(const pack::Light& light, const glm::vec3& p) {
   const glm::vec3 radiant = light.color * light.intensity;
   if (is_directional(light)) return {radiant, -light.direction_ws};
@@ -47,11 +48,35 @@ Incoming incoming(const pack::Light& light, const glm::vec3& p) {
   return {radiant * falloff, to_light};
 }
 
-float luminance(const glm::vec3& radiance) {
-  return glm::dot(radiance, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+bool sees(const rays::PackRays& rays, const pack::Light& light, const glm::vec3& place_ws) {
+  if (is_directional(light))
+    return !rays.first_hit(place_ws, -light.direction_ws, far_away_m, rays::Meets::casters);
+  // What is nearer to the light than the near plane of its shadow map casts no shadow.
+  const glm::vec3 d = place_ws - light.position_ws;
+  const float distance = glm::length(d);
+  const float near_m = pack::shadow_near_m(light);
+  if (distance <= near_m) return true;
+  return !rays.blocked(place_ws, light.position_ws + d * (near_m / distance));
 }
 
-}  // namespace
+std::optional<rays::Hit> first_seen(const SampledScene& scene, const glm::vec3& eye_ws, const glm::vec3& way,
+                                    uint64_t& rays_cast) {
+  float passed_m = 0.0f;
+  for (uint32_t backs = 0; backs < most_backs; ++backs) {
+    auto hit = scene.rays.first_hit(eye_ws + way * passed_m, way, far_away_m);
+    ++rays_cast;
+    if (!hit) return hit;
+    hit->distance_m += passed_m;
+    if (scene.materials[hit->material].double_sided || glm::dot(hit->normal_ws, way) <= 0.0f) return hit;
+    passed_m = hit->distance_m + rays::PackRays::end_gap_m(eye_ws, eye_ws + way * hit->distance_m);
+  }
+  return std::nullopt;
+}
+
+SeenPlace seen_place(const rays::Hit& hit, const glm::vec3& eye_ws, const glm::vec3& way) {
+  const glm::vec3 normal = glm::dot(hit.normal_ws, way) > 0.0f ? -hit.normal_ws : hit.normal_ws;
+  return {eye_ws + way * hit.distance_m + normal * (lift * hit.distance_m), normal};
+}
 
 LightSamples::LightSamples(const SampledScene& scene, std::span<const uint32_t> lights, const Camera& camera,
                            float aspect, const SampleSettings& settings)
@@ -60,20 +85,6 @@ LightSamples::LightSamples(const SampledScene& scene, std::span<const uint32_t> 
   sees_.assign(numbers_.size() * points_.size(), unknown);
   light_points(camera);
   expose(settings.exposure_ev);
-}
-
-// What the g-buffer holds: backs are not drawn, but of double-sided materials. `way` is of unit length.
-std::optional<rays::Hit> LightSamples::first_seen(const glm::vec3& eye_ws, const glm::vec3& way) const {
-  float passed_m = 0.0f;
-  for (uint32_t backs = 0; backs < most_backs; ++backs) {
-    auto hit = scene_.rays.first_hit(eye_ws + way * passed_m, way, far_away_m);
-    ++rays_cast_;
-    if (!hit) return hit;
-    hit->distance_m += passed_m;
-    if (scene_.materials[hit->material].double_sided || glm::dot(hit->normal_ws, way) <= 0.0f) return hit;
-    passed_m = hit->distance_m + rays::PackRays::end_gap_m(eye_ws, eye_ws + way * hit->distance_m);
-  }
-  return std::nullopt;
 }
 
 void LightSamples::place_points(const Camera& camera, float aspect, const SampleSettings& settings) {
@@ -88,15 +99,14 @@ void LightSamples::place_points(const Camera& camera, float aspect, const Sample
         (static_cast<float>(cell / settings.columns) + scattered(place + 1)) / static_cast<float>(settings.rows);
     const glm::vec3 way = glm::normalize(axes.forward + axes.right * ((2.0f * x - 1.0f) * half_height * aspect) +
                                          axes.up * ((1.0f - 2.0f * y) * half_height));
-    const auto hit = first_seen(camera.eye_ws, way);
+    const auto hit = first_seen(scene_, camera.eye_ws, way, rays_cast_);
     if (!hit || scene_.materials[hit->material].unlit) continue;
-    const glm::vec3 normal = glm::dot(hit->normal_ws, way) > 0.0f ? -hit->normal_ws : hit->normal_ws;
-    const glm::vec3 dark =
-        scene_.materials[hit->material].emissive + settings.ambient * scene_.materials[hit->material].base_color;
-    points_.push_back({.position_ws = camera.eye_ws + way * hit->distance_m + normal * (lift * hit->distance_m),
-                       .normal_ws = normal,
-                       .unshadowable = dark,
-                       .reference = dark});
+    const SeenPlace seen = seen_place(*hit, camera.eye_ws, way);
+    const MeanMaterial& material = scene_.materials[hit->material];
+    const float reflected_of_all = settings.ambient - settings.headlight * glm::dot(seen.normal_ws, way);
+    const glm::vec3 dark = material.emissive + reflected_of_all * material.base_color;
+    points_.push_back(
+        {.position_ws = seen.position_ws, .normal_ws = seen.normal_ws, .unshadowable = dark, .reference = dark});
     material_.push_back(hit->material);
   }
 }
@@ -155,14 +165,7 @@ void LightSamples::expose(const std::optional<float>& exposure_ev) {
 
 bool LightSamples::is_lit(uint32_t i, const glm::vec3& place_ws) const {
   ++rays_cast_;
-  if (is_directional(light(i)))
-    return !scene_.rays.first_hit(place_ws, -light(i).direction_ws, far_away_m, rays::Meets::casters);
-  // What is nearer to the light than the near plane of its shadow map casts no shadow.
-  const glm::vec3 d = place_ws - light(i).position_ws;
-  const float distance = glm::length(d);
-  const float near_m = pack::shadow_near_m(light(i));
-  if (distance <= near_m) return true;
-  return !scene_.rays.blocked(place_ws, light(i).position_ws + d * (near_m / distance));
+  return chandelier::sees(scene_.rays, light(i), place_ws);
 }
 
 float LightSamples::blocked_at(uint32_t i, const glm::vec3& place_ws) const {

@@ -26,11 +26,31 @@ struct SampledScene {
   std::vector<MeanMaterial> materials;
 };
 
+/// What the g-buffer holds along `way`, of unit length: backs are not drawn, but of double-sided materials. Adds the
+/// rays that it cast to `rays_cast`.
+std::optional<rays::Hit> first_seen(const SampledScene& scene, const glm::vec3& eye_ws, const glm::vec3& way,
+                                    uint64_t& rays_cast);
+/// A place on what first_seen() found, a little off it, and the side of it that is seen.
+struct SeenPlace {
+  glm::vec3 position_ws;
+  glm::vec3 normal_ws;  // of the triangle, facing the eye
+};
+SeenPlace seen_place(const rays::Hit& hit, const glm::vec3& eye_ws, const glm::vec3& way);
+/// Illuminance of a surface that faces the light, were nothing in its way, and the way to it.
+struct Incoming {
+  glm::vec3 illuminance;
+  glm::vec3 to_light;
+};
+Incoming incoming(const pack::Light& light, const glm::vec3& place_ws);
+/// Whether a light sees a place, were its range endless. Casts one ray.
+bool sees(const rays::PackRays& rays, const pack::Light& light, const glm::vec3& place_ws);
+
 struct SampleSettings {
   uint32_t columns = 64;  // of the grid of points over the picture
   uint32_t rows = 36;
-  uint32_t scatter = 0;              // another number, other places in the grid's cells
-  float ambient = 0.0f;              // as RenderSettings has it
+  uint32_t scatter = 0;  // another number, other places in the grid's cells
+  float ambient = 0.0f;  // as RenderSettings has it
+  float headlight = 0.0f;
   std::optional<float> exposure_ev;  // absent: from the points' own brightness, as shading/exposure.comp does
 };
 
@@ -40,7 +60,7 @@ class LightSamples {
   struct Point {
     glm::vec3 position_ws;   // a little off its surface
     glm::vec3 normal_ws;     // of the triangle, facing the eye
-    glm::vec3 unshadowable;  // radiance that no shadow takes: emission, ambient, and lights that throw none
+    glm::vec3 unshadowable;  // radiance that no shadow takes: emission, ambient, headlight, and lights that throw none
     glm::vec3 reference;     // radiance with a shadow map for each light
   };
   /// What a light adds to a point that it sees, wherever that is not nothing.
@@ -76,7 +96,6 @@ class LightSamples {
  private:
   static constexpr uint8_t unknown = 2;
 
-  std::optional<rays::Hit> first_seen(const glm::vec3& eye_ws, const glm::vec3& way) const;
   void place_points(const Camera& camera, float aspect, const SampleSettings& settings);
   glm::vec3 added_by(const pack::Light& light, uint32_t point, const Camera& camera) const;
   void light_points(const Camera& camera);

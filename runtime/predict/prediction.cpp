@@ -45,9 +45,11 @@ LightList Predictor::lights_in_view(const RenderSettings& settings) const {
 
 double Predictor::expected_rmse(const RenderSettings& settings, const FramePlan& plan) {
   if (plan.recipe.filter == Filter::hard && plan.list.center == plan.list.pack_light) return 0.0;  // the reference
-  return chandelier::expected_rmse(
-      plan.list, plan.recipe, settings.camera, aspect_of(settings),
-      {.surroundings = &surroundings_, .ambient = settings.ambient, .exposure_ev = settings.exposure_ev});
+  return chandelier::expected_rmse(plan.list, plan.recipe, settings.camera, aspect_of(settings),
+                                   {.surroundings = &surroundings_,
+                                    .ambient = settings.ambient,
+                                    .headlight = settings.headlight,
+                                    .exposure_ev = settings.exposure_ev});
 }
 
 Prediction Predictor::predict(const RenderSettings& settings) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The g-buffer's surfaces, and the radiance that needs no light: emission and ambient, with alpha 1. Alpha 0 says that
-// the colour is what the screen shall show (KHR_materials_unlit): neither light nor exposure changes it.
+// The g-buffer's surfaces, and the radiance that no shadow takes away: emission, ambient, and a headlight, which shines
+// from the eye on all that is seen and is as bright at any distance; with alpha 1. Alpha 0 says that the colour is what the screen shall show (KHR_materials_unlit): neither light nor exposure changes it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
@@ -53,5 +53,7 @@ void main() {
   // Last: derivatives are undefined beside a pixel that has ended.
   if (m.alpha_mode == ALPHA_MODE_MASK && base.a < m.alpha_cutoff) discard;
   surface_bits = pack_surface(Surface(bent, facet, base.rgb, metal_rough.x, metal_rough.y));
-  radiance = m.unlit != 0u ? vec4(base.rgb, 0.0) : vec4(emissive + view.ambient * occlusion * base.rgb, 1.0);
+  float facing = max(-dot(bent, normalize(position_from_eye)), 0.0);
+  float reflected = view.ambient * occlusion + view.headlight * facing;
+  radiance = m.unlit != 0u ? vec4(base.rgb, 0.0) : vec4(emissive + reflected * base.rgb, 1.0);
 }
