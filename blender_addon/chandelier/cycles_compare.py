@@ -67,7 +67,7 @@ def tool(name):
 def chandelier_picture(scene, pack, path, size, preset, *options):
     """The same in Cycles' units; writes a .pfm. ToolError says in one line why there is none."""
     command = [tool("chandelier-play"), str(pack), "--output", str(path), "--camera", scene.camera.name, "--size",
-               f"{size[0]}x{size[1]}", "--preset", preset, "--exposure", "0", *options]
+               f"{size[0]}x{size[1]}", "--preset", preset, "--exposure", "0", "--headlight", "off", *options]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise tools.ToolError(next(reversed(done.stderr.strip().splitlines()), "chandelier-play failed"))

@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "player/default_view.h"
+
 namespace chandelier::player {
 namespace {
 
@@ -33,6 +35,19 @@ Camera named(const pack::Camera& from) {
 }
 
 }  // namespace
+
+std::string_view name_of(ChosenView chosen) {
+  switch (chosen) {
+    case ChosenView::whole:
+      return "whole scene";
+    case ChosenView::without_sky:
+      return "without sky";
+    case ChosenView::inside:
+      return "inside";
+    default:
+      return "asked";
+  }
+}
 
 bool is_camera_numbers(std::string_view text) {
   return text.find(',') != text.npos && text.find_first_not_of("0123456789+-.eE, ") == text.npos;
@@ -70,6 +85,19 @@ std::optional<FileCamera> camera_from_numbers(std::string_view text) {
   return FileCamera{eye_m, camera_looking_at(eye, target, fov_deg * kPi / 180.0f)};
 }
 
+std::string camera_numbers(const pack::View& pack, const Camera& camera) {
+  // As fine as floats tell in the pack's own world, wherever that lies in the file's.
+  const glm::vec3 far = glm::abs(camera.eye_ws);
+  const double size = std::max({double{far.x}, double{far.y}, double{far.z}, 1.0});
+  const double finest = std::pow(10.0, std::floor(std::log10(size)) - 5.0);
+  const auto rounded = [finest](double value) { return std::round(value / finest) * finest; };
+  const glm::dvec3 eye = pack.bake_info->origin_m + glm::dvec3(camera.eye_ws);
+  const glm::dvec3 target = eye + glm::dvec3(camera.forward_ws);
+  return fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.4g}", rounded(eye.x), rounded(eye.y),
+                     rounded(eye.z), rounded(target.x), rounded(target.y), rounded(target.z),
+                     camera.yfov_rad * 180.0f / kPi);
+}
+
 Camera camera_looking_at(const glm::vec3& eye_ws, const glm::vec3& target_ws, float yfov_rad) {
   Camera camera;
   camera.eye_ws = eye_ws;
@@ -103,10 +131,7 @@ NamedCamera choose_camera(const pack::File& pack, const std::string& name, float
     names.push_back(pack.text(camera.name));
     if (name.empty() || names.back() == name) return {std::string(names.back()), named(camera), origin_m};
   }
-  if (name.empty()) {
-    const pack::BakeInfo& info = *pack.view().bake_info;
-    return {"", camera_framing(info.bounds_min_ws, info.bounds_max_ws, aspect), origin_m};
-  }
+  if (name.empty()) return default_view(pack.view(), aspect);
   if (names.empty()) throw std::runtime_error(fmt::format("--camera: the pack has no cameras ({})", name));
   throw std::runtime_error(
       fmt::format("--camera: the pack has {}, none of that name ({})", fmt::join(names, ", "), name));

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "player/budget.h"
+#include "player/darkness.h"
 #include "player/image_files.h"
 #include "player/metrics/color_maps.h"
 #include "player/metrics/flip.h"
@@ -158,6 +159,7 @@ void run_comparison(const Options& options, const NamedCamera& camera, const pac
             colored(flip, 1.0f, magma_color));
   write_file(options.report / "comparison.json", to_json(comparison).dump(2) + "\n");
   write_file(options.report / "report.html", report_html(comparison));
+  warn_of_black(options, pack.view(), a.picture);
   const Differences& d = comparison.differences;
   fmt::print(stderr,
              "{}: RMSE {:.5f} shown, {:.5f} linear; SSIM {}; FLIP {:.5f}; {:.1f} and {:.1f} ms (medians of {}) on {}\n",

@@ -6,13 +6,14 @@
 
 #include <cstdio>
 
+#include "player/darkness.h"
 #include "player/image_files.h"
 #include "player/stats.h"
 
 namespace chandelier::player {
 
-void run_headless(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer,
-                  const VisibilitySource& visibility) {
+void run_headless(const Options& options, const NamedCamera& camera, const pack::File& pack, const gpu::Device& device,
+                  Renderer& renderer, const VisibilitySource& visibility) {
   const NamedRecipe& named = options.recipes.front();
   const RenderSettings settings = render_settings(options, named.recipe, camera.camera, visibility);
   renderer.warm_up(settings);
@@ -31,11 +32,13 @@ void run_headless(const Options& options, const NamedCamera& camera, const gpu::
   run.shared_maps = named.shared_maps;
   run.expected_rmse = named.expected_rmse;
   run.image = options.output.filename().string();
-  write_picture(options.output, renderer.read_back());
+  const Picture picture = renderer.read_back();
+  write_picture(options.output, picture);
   if (!options.stats.empty()) write_file(options.stats, to_json(run).dump(2) + "\n");
   fmt::print(stderr, "{}: {}x{}, {}, {} lights, {} shadow maps, {:.1f} ms (median of {}) on {}\n",
              options.output.string(), settings.width, settings.height, named.preset, run.stats.lights,
              run.stats.shadow_maps, run.stats.frame_ms, run.frames, run.device);
+  warn_of_black(options, pack.view(), picture);
 }
 
 }  // namespace chandelier::player

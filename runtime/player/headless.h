@@ -8,7 +8,7 @@
 namespace chandelier::player {
 
 /// Draws options.frames timed frames after warming up, writes the last one and, where asked, the stats. Throws.
-void run_headless(const Options& options, const NamedCamera& camera, const gpu::Device& device, Renderer& renderer,
-                  const VisibilitySource& visibility);
+void run_headless(const Options& options, const NamedCamera& camera, const pack::File& pack, const gpu::Device& device,
+                  Renderer& renderer, const VisibilitySource& visibility);
 
 }  // namespace chandelier::player

@@ -49,16 +49,23 @@ RenderSettings LiveScene::put_on_device(const Scene& scene) {
   return wanted;
 }
 
-void LiveScene::follow() {
-  if (Clock::now() < next_look_) return;
+bool LiveScene::follow() {
+  if (Clock::now() < next_look_) return false;
   next_look_ = Clock::now() + kLookEvery;
   const FileStamp stamp = stamp_of(asked_.pack);
   const bool is_still = stamp == std::exchange(seen_, stamp);  // else it may be half written
-  if (!is_still || stamp == std::exchange(tried_, stamp)) return;
+  if (!is_still || stamp == std::exchange(tried_, stamp)) return false;
   if (stamp == scene_->stamp)
     is_older_ = false;  // moved away and back
   else
     replace();
+  return true;
+}
+
+void LiveScene::toggle_headlight() {
+  const float strength = asked_.headlight.value_or(0.0f) > 0.0f ? *asked_.headlight : kHeadlightOn;
+  settings.headlight = settings.headlight > 0.0f ? 0.0f : strength;
+  headlight_ = settings.headlight;
 }
 
 void LiveScene::replace() {
@@ -67,6 +74,7 @@ void LiveScene::replace() {
   options.height = settings.height;
   const bool was_moved = settings.camera != pack_camera_;
   if (was_moved) options.camera = in_file(settings.camera, scene_->camera.origin_m);
+  if (headlight_) options.headlight = headlight_;
   try {
     auto next = std::make_unique<const Scene>(options);
     settings = put_on_device(*next);
@@ -81,6 +89,7 @@ void LiveScene::replace() {
   if (on_device_) return;
   RenderSettings again = put_on_device(*scene_);
   again.camera = settings.camera;
+  again.headlight = settings.headlight;
   again.width = settings.width;
   again.height = settings.height;
   settings = again;

@@ -17,16 +17,20 @@ class LiveScene {
 
   /// Looks at the file twice a second. A pack that has taken the shown one's place and is not being written any more
   /// is shown from now on, with the settings' camera and size; a camera that is still as the pack had it follows the
-  /// pack's. One that cannot be shown leaves the older one and a warning on stderr. No frame may be on its way. Throws
-  /// gpu::Error where not even the older one can be shown again.
-  void follow();
+  /// pack's. One that cannot be shown leaves the older one and a warning on stderr. True where anything of that
+  /// happened: what was drawn before is out of date. No frame may be on its way. Throws gpu::Error where not even the
+  /// older one can be shown again.
+  bool follow();
+
+  /// On where it is off; stays so when the pack is replaced.
+  void toggle_headlight();
 
   const Scene& scene() const { return *scene_; }
   Renderer& renderer() { return on_device_->renderer; }
   /// What the file holds cannot be shown: this is what it held before.
   bool is_older() const { return is_older_; }
 
-  RenderSettings settings;  // of the next frame; camera and size are the caller's to change
+  RenderSettings settings;  // of the next frame; camera, size and previous centres are the caller's to change
 
  private:
   struct OnDevice {
@@ -40,7 +44,8 @@ class LiveScene {
   Options asked_;
   gpu::Device& device_;
   std::unique_ptr<const Scene> scene_;
-  Camera pack_camera_;  // as last taken from a pack
+  Camera pack_camera_;              // as last taken from a pack
+  std::optional<float> headlight_;  // as last toggled
   std::optional<OnDevice> on_device_;
   std::chrono::steady_clock::time_point next_look_;
   FileStamp seen_;   // at the last look

@@ -58,13 +58,13 @@ ValidationLog draw(const Options& asked, std::unique_ptr<const Scene> scene) {
     return device.validation_log();
   }
 #endif
-  const auto& [options, stamp, pack, camera] = *scene;
+  const auto& [stamp, pack, options, camera] = *scene;
   gpu::Device device(device_options);
   Renderer renderer(device, pack);
   const VisibilitySource visibility = visibility_for(options.recipes, pack);
-  if (options.mode == Mode::headless) run_headless(options, camera, device, renderer, visibility);
+  if (options.mode == Mode::headless) run_headless(options, camera, pack, device, renderer, visibility);
   if (options.mode == Mode::compare) run_comparison(options, camera, pack, device, renderer, visibility);
-  if (options.mode == Mode::path) run_path(options, camera.origin_m, device, renderer, visibility);
+  if (options.mode == Mode::path) run_path(options, pack, device, renderer, visibility);
   return device.validation_log();
 }
 

@@ -52,6 +52,15 @@ void read_exposure(const std::string& text, Options& options) {
   options.exposure_ev = ev;
 }
 
+void read_headlight(const std::string& text, Options& options) {
+  if (text == "auto") return;
+  float strength = text == "on" ? kHeadlightOn : 0.0f;
+  const bool is_named = text == "on" || text == "off";
+  if (!is_named && (!CLI::detail::lexical_cast(text, strength) || !(strength >= 0.0f && strength <= 1e6f)))
+    throw UsageError(fmt::format("--headlight: must be auto, on, off or a strength from 0 to 1e6 ({})", text));
+  options.headlight = strength;
+}
+
 void read_camera(const std::string& text, Options& options) {
   if (!is_camera_numbers(text)) {
     options.camera_name = text;
@@ -199,6 +208,7 @@ Options checked(const Typed& typed) {
   options.ambient = typed.ambient;
   read_size(typed.size, options);
   read_exposure(typed.exposure, options);
+  read_headlight(typed.headlight, options);
   read_camera(typed.camera, options);
   if (!typed.path.empty())
     read_path_mode(typed, options);
@@ -246,6 +256,7 @@ RenderSettings render_settings(const Options& options, const Recipe& recipe, con
   settings.width = options.width;
   settings.height = options.height;
   settings.ambient = options.ambient;
+  settings.headlight = options.headlight.value_or(0.0f);
   settings.exposure_ev = options.exposure_ev;
   settings.visibility = visibility;
   return settings;

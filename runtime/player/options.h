@@ -15,6 +15,8 @@
 
 namespace chandelier::player {
 
+constexpr float kHeadlightOn = 1.0f;  // as RenderSettings has it
+
 enum class Mode { list_devices, headless, compare, path, predict, window };
 
 struct NamedRecipe {
@@ -41,6 +43,7 @@ struct Options {
   std::string device;
   bool validation = false;
   float ambient = 0.0f;
+  std::optional<float> headlight;  // absent: as automatic_headlight() finds it for the pack
   std::optional<float> exposure_ev;
 };
 

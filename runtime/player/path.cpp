@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "player/camera.h"
+#include "player/darkness.h"
 #include "player/image_files.h"
 #include "player/stats.h"
 
@@ -120,8 +121,9 @@ CenterChanges center_changes(std::span<const uint32_t> before, std::span<const u
   return changes;
 }
 
-void run_path(const Options& options, const glm::dvec3& origin_m, const gpu::Device& device, Renderer& renderer,
+void run_path(const Options& options, const pack::File& pack, const gpu::Device& device, Renderer& renderer,
               const VisibilitySource& visibility) {
+  const glm::dvec3& origin_m = pack.view().bake_info->origin_m;
   const std::vector<Camera> cameras = read_path(options.path, options.frames.value_or(60), origin_m);
   make_folder(options.report);
   Run run{.pack = options.pack.filename().string(),
@@ -145,7 +147,10 @@ void run_path(const Options& options, const glm::dvec3& origin_m, const gpu::Dev
     const bool is_last = steps.size() + 1 == cameras.size();
     if (changes.changed > 0 || is_last) {
       const Picture picture = renderer.read_back();
-      if (is_last) write_picture(options.report / run.image, picture);
+      if (is_last) {
+        write_picture(options.report / run.image, picture);
+        warn_of_black(options, pack.view(), picture);
+      }
       if (changes.changed > 0)
         step.unexplained_rmse = rmse_shown(picture, without_changes(renderer, run.settings, before));
     }

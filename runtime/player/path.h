@@ -36,7 +36,7 @@ struct CenterChanges {
 CenterChanges center_changes(std::span<const uint32_t> before, std::span<const uint32_t> after);
 
 /// Draws every step and writes path.json and last.png into the report's folder. Throws.
-void run_path(const Options& options, const glm::dvec3& origin_m, const gpu::Device& device, Renderer& renderer,
+void run_path(const Options& options, const pack::File& pack, const gpu::Device& device, Renderer& renderer,
               const VisibilitySource& visibility);
 
 }  // namespace chandelier::player

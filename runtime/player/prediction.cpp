@@ -17,9 +17,14 @@ std::string in_units(const Counter& counter, uint64_t value) {
                           : fmt::format("{}", value);
 }
 
+std::string camera_text(const NamedCamera& camera) {
+  if (camera.chosen != ChosenView::asked) return fmt::format("no camera: {}", name_of(camera.chosen));
+  return camera.name.empty() ? "camera by numbers" : "camera " + camera.name;
+}
+
 void print_table(const Run& run) {
-  fmt::print("{}: {}x{}, {}, {}\n", run.pack, run.settings.width, run.settings.height,
-             run.camera.name.empty() ? "camera by numbers" : "camera " + run.camera.name, run.preset);
+  fmt::print("{}: {}x{}, {}, {}\n", run.pack, run.settings.width, run.settings.height, camera_text(run.camera),
+             run.preset);
   for (const Counter& counter : counters())
     fmt::print("  {:<22}{:>14}\n", counter.name, in_units(counter, run.stats.*counter.value));
   fmt::print("  {:<22}{:>14}\n", "expected_rmse_shown", fmt::format("{:.4f}", *run.expected_rmse));

@@ -237,17 +237,26 @@ std::string recipes(const Comparison& c) {
   return html + "</table></div>\n";
 }
 
+std::string camera_text(const NamedCamera& camera) {
+  if (camera.chosen != ChosenView::asked)
+    return fmt::format("chosen for a pack that has none ({})", name_of(camera.chosen));
+  return camera.name.empty() ? "" : "“" + escape_html(camera.name) + "”";
+}
+
+std::string headlight_text(float headlight) {
+  return headlight > 0.0f ? fmt::format(", headlight {:g}", headlight) : "";
+}
+
 std::string about(const Comparison& c) {
   const Camera& camera = c.a.camera.camera;
   const glm::dvec3 eye_m = in_file(camera, c.a.camera.origin_m).eye_m;
   return fmt::format(
       "<p class=\"about\">{}, {}×{} pixels, camera {} at ({:.2f}, {:.2f}, {:.2f}) looking along ({:.2f}, {:.2f}, "
       "{:.2f}), "
-      "exposure {:+.2f} EV on both sides.<br>{}; {}</p>\n",
-      escape_html(c.a.pack), c.a.settings.width, c.a.settings.height,
-      c.a.camera.name.empty() ? "" : "“" + escape_html(c.a.camera.name) + "”", eye_m.x, eye_m.y, eye_m.z,
-      camera.forward_ws.x, camera.forward_ws.y, camera.forward_ws.z, c.a.stats.exposure_ev, escape_html(c.a.device),
-      escape_html(c.a.driver));
+      "exposure {:+.2f} EV{} on both sides.<br>{}; {}</p>\n",
+      escape_html(c.a.pack), c.a.settings.width, c.a.settings.height, camera_text(c.a.camera), eye_m.x, eye_m.y,
+      eye_m.z, camera.forward_ws.x, camera.forward_ws.y, camera.forward_ws.z, c.a.stats.exposure_ev,
+      headlight_text(c.a.settings.headlight), escape_html(c.a.device), escape_html(c.a.driver));
 }
 
 }  // namespace

@@ -24,13 +24,14 @@ struct FileStamp {
 FileStamp stamp_of(const std::filesystem::path& path);
 
 struct Scene {
-  /// Opens asked.pack and keeps the budget, but for a comparison, whose sides keep it as they are drawn. Throws
-  /// pack::Error, and std::runtime_error where the pack has no such camera.
+  /// Opens asked.pack and keeps the budget, but for a comparison, whose sides keep it as they are drawn. Says on stderr
+  /// what one should know of lights and camera. Throws pack::Error, and std::runtime_error where the pack has no such
+  /// camera.
   explicit Scene(const Options& asked);
 
-  Options options;  // with recipes that keep the budget
   FileStamp stamp;  // from before the file was read
   pack::File pack;  // a window's own copy: what is written into the file while it is shown must not be seen
+  Options options;  // with the headlight that the pack needs, and recipes that keep the budget
   NamedCamera camera;
 };
 

@@ -44,11 +44,13 @@ double median_of(std::span<const FrameStats> frames, Get get) {
 Json camera_json(const NamedCamera& named) {
   const Camera& camera = named.camera;
   const auto vec = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
-  return {{"name", named.name},
-          {"eye_m", vec(in_file(camera, named.origin_m).eye_m)},
-          {"forward_ws", vec(camera.forward_ws)},
-          {"up_ws", vec(camera.up_ws)},
-          {"yfov_deg", camera.yfov_rad * 180.0f / std::numbers::pi_v<float>}};
+  Json json = {{"name", named.name},
+               {"eye_m", vec(in_file(camera, named.origin_m).eye_m)},
+               {"forward_ws", vec(camera.forward_ws)},
+               {"up_ws", vec(camera.up_ws)},
+               {"yfov_deg", camera.yfov_rad * 180.0f / std::numbers::pi_v<float>}};
+  if (named.chosen != ChosenView::asked) json["chosen"] = name_of(named.chosen);
+  return json;
 }
 
 Json recipe_json(const Recipe& recipe) {
@@ -120,6 +122,7 @@ Json to_json(const Run& run) {
                {"preset", run.preset},
                {"recipe", recipe_json(run.settings.recipe)},
                {"ambient", run.settings.ambient},
+               {"headlight", run.settings.headlight},
                {"exposure_ev", run.stats.exposure_ev},
                {"frames", run.frames},
                {"frame_ms", run.stats.frame_ms},

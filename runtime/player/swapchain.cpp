@@ -154,7 +154,7 @@ bool Swapchain::show(VkImage image, VkExtent2D size, VkExtent2D window) {
     extent_ = {};  // makes the next show() start anew
   else
     gpu::check(presented, "vkQueuePresentKHR");
-  return true;
+  return presented != VK_ERROR_OUT_OF_DATE_KHR;
 }
 
 void Swapchain::record(VkImage from, VkExtent2D size, VkImage to) {

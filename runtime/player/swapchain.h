@@ -18,7 +18,8 @@ class Swapchain {
   Swapchain& operator=(const Swapchain&) = delete;
 
   /// Blits `image` (TRANSFER_SRC_OPTIMAL, its last use waited for) over the whole window and waits until that is done.
-  /// `window` is the size of the window now, pixels; false where the window has no area to show anything in. Throws.
+  /// `window` is the size of the window now, pixels; false where the picture is not to be seen: the window has no area,
+  /// or has changed meanwhile. Throws.
   bool show(VkImage image, VkExtent2D size, VkExtent2D window);
 
  private:

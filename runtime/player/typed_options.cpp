@@ -11,6 +11,9 @@
 
 #include "frame/recipe.h"
 #include "player/image_files.h"
+#ifndef CHANDELIER_PORTABLE
+#include "player/window_keys.h"
+#endif
 
 namespace chandelier::player {
 namespace {
@@ -42,6 +45,10 @@ std::vector<std::string> strings(std::span<const std::string_view> views) {
 std::string footer() {
   std::string text = "Presets:\n";
   for (const Preset& preset : presets()) text += fmt::format("  {:<18}{}\n", preset.name, preset.description);
+#ifndef CHANDELIER_PORTABLE
+  text += "\nIn the window:\n";
+  for (const WindowKey& key : window_keys) text += fmt::format("  {:<22}{}\n", key.name, key.meaning);
+#endif
   text +=
       "\nA window shows whatever pack takes its file's place, from where one has flown to. What cannot be shown is\n"
       "told, and the older one stays.\n"
@@ -88,14 +95,22 @@ void declare_output(CLI::App& app, Typed& typed) {
 }
 
 void declare_view(CLI::App& app, Typed& typed) {
-  app.add_option("--camera", typed.camera,
-                 "A camera of the pack, or eye and target in the glTF's coordinates, vertical angle [the pack's first, else "
-                 "sees it all]")
+  app.add_option(
+         "--camera", typed.camera,
+         "A camera of the pack, or eye and target in the glTF's coordinates, vertical angle [the pack's first, else "
+         "one that sees something lit]")
       ->type_name("NAME|ex,ey,ez,tx,ty,tz,fov_deg")
       ->group("View");
   app.add_option("--ambient", typed.ambient, "Radiance from everywhere")
       ->type_name("R")
       ->check(number_between(0.0, 1e6))
+      ->capture_default_str()
+      ->group("View");
+  app.add_option(
+         "--headlight", typed.headlight,
+         "A light in the camera, as bright at any distance: auto, on, off, or the radiance that it gives a white "
+         "surface. auto: on where the pack has no lights and there is no --ambient")
+      ->type_name("auto|on|off|R")
       ->capture_default_str()
       ->group("View");
   app.add_option("--exposure", typed.exposure, "Stops, or auto: from the picture's own brightness")

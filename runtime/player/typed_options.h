@@ -16,7 +16,8 @@ namespace chandelier::player {
 constexpr uint32_t kLargestPicture = 16384;  // texels a side; no Vulkan device draws more
 
 struct Typed {
-  std::string pack, output, size = "1280x720", camera, stats, device, preset, exposure = "auto", compare, report, path;
+  std::string pack, output, size = "1280x720", camera, stats, device, preset, exposure = "auto", headlight = "auto",
+                            compare, report, path;
   std::optional<uint32_t> frames;
   bool list_devices = false;
   bool predict = false;

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plain window with a fly camera. The keys are listed in this folder's README.
+// A plain window with a fly camera. It draws when something changed: an open window that nobody touches
+// costs nothing.
 #include "player/window.h"
 
-#include <volk.h>
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <volk.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "player/darkness.h"
 #include "player/swapchain.h"
+#include "player/window_keys.h"
 
 namespace chandelier::player {
 namespace {
@@ -23,7 +26,9 @@ constexpr float kSlowest_m_per_s = 0.02f;
 constexpr float kFastest_m_per_s = 500.0f;
 constexpr float kFast = 4.0f;  // with Shift
 constexpr float kTurn_rad_per_px = 0.003f;
-constexpr float kLongestStep_s = 0.25f;  // a slow device must not throw the camera through a wall
+constexpr float kLongestStep_s = 0.25f;       // a slow device must not throw the camera through a wall
+constexpr float kFirstStep_s = 1.0f / 60.0f;  // after a rest, in which nobody flew
+constexpr double kNap_s = 0.25;  // longest wait for something to happen: a signal and another pack are no events
 
 volatile std::sig_atomic_t asked_to_end = 0;
 std::string glfw_error;  // the last one's description
@@ -55,6 +60,8 @@ struct Window::Impl {
   float speed_m_per_s = 1.0f;
   bool looking = false;
   bool captured = false;
+  bool is_covered = false;  // something lay over what was shown
+  bool headlight_was_pressed = false;
   double cursor_x = 0.0;
   double cursor_y = 0.0;
 
@@ -66,16 +73,24 @@ struct Window::Impl {
   static Impl& of(GLFWwindow* window) { return *static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
   static void on_key(GLFWwindow* window, int key, int, int action, int) {
     if (action != GLFW_PRESS) return;
-    if (key == GLFW_KEY_ESCAPE) glfwSetWindowShouldClose(window, GLFW_TRUE);
-    if (key == GLFW_KEY_TAB) of(window).captured = !of(window).captured;
+    if (key == key_code(Does::quit)) glfwSetWindowShouldClose(window, GLFW_TRUE);
+    if (key == key_code(Does::keep_looking)) of(window).captured = !of(window).captured;
+    if (key == key_code(Does::headlight)) of(window).headlight_was_pressed = true;
   }
   static void on_scroll(GLFWwindow* window, double, double y) {
     float& speed = of(window).speed_m_per_s;
     speed = std::clamp(speed * (y > 0.0 ? 1.25f : 0.8f), kSlowest_m_per_s, kFastest_m_per_s);
   }
+  static void on_refresh(GLFWwindow* window) { of(window).is_covered = true; }
+
+  bool is_held(Does does) const { return glfwGetKey(window, key_code(does)) == GLFW_PRESS; }
+  bool is_minimised() const {
+    const VkExtent2D size = framebuffer_size(window);
+    return size.width == 0 || size.height == 0 || glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE;
+  }
 
   void look(Camera& camera) {
-    const bool wanted = captured || glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS;
+    const bool wanted = captured || glfwGetMouseButton(window, key_code(Does::look)) == GLFW_PRESS;
     double x = 0.0;
     double y = 0.0;
     if (wanted != looking) {
@@ -92,24 +107,95 @@ struct Window::Impl {
   }
 
   void fly(Camera& camera, float seconds) {
-    const auto axis = [this](int minus, int plus) {
-      return static_cast<float>(glfwGetKey(window, plus) == GLFW_PRESS) -
-             static_cast<float>(glfwGetKey(window, minus) == GLFW_PRESS);
+    const auto axis = [this](Does minus, Does plus) {
+      return static_cast<float>(is_held(plus)) - static_cast<float>(is_held(minus));
     };
-    const bool fast =
-        glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS || glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
+    const bool fast = is_held(Does::faster) || glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
     const float step_m = speed_m_per_s * (fast ? kFast : 1.0f) * std::min(seconds, kLongestStep_s);
-    move(camera,
-         step_m * glm::vec3(axis(GLFW_KEY_A, GLFW_KEY_D), axis(GLFW_KEY_Q, GLFW_KEY_E), axis(GLFW_KEY_S, GLFW_KEY_W)));
+    move(camera, step_m * glm::vec3(axis(Does::left, Does::right), axis(Does::down, Does::up),
+                                    axis(Does::back, Does::forward)));
   }
+
+  void steer(LiveScene& live, float seconds) {
+    look(live.settings.camera);
+    fly(live.settings.camera, seconds);
+    const VkExtent2D size = framebuffer_size(window);
+    live.settings.width = size.width;
+    live.settings.height = size.height;
+    if (std::exchange(headlight_was_pressed, false)) live.toggle_headlight();
+  }
+};
+
+// What is on the screen: drawn anew where something changed, else left as it is.
+class Window::Screen {
+ public:
+  Screen(Impl& of, LiveScene& live, const gpu::Device& device, VkSurfaceKHR surface)
+      : impl_(of), live_(live), swapchain_(device, surface) {}
+
+  /// True where there was anything to do. `draws_anyway`: even if nothing changed.
+  bool update(bool draws_anyway) {
+    const bool is_replaced = live_.follow();
+    if (is_replaced || draws_anyway || !(of(live_.settings) == drawn_))
+      draw();
+    else if (!impl_.is_covered)
+      return false;
+    const VkExtent2D size{drawn_.width, drawn_.height};
+    impl_.is_covered = !swapchain_.show(live_.renderer().shown_image(), size, framebuffer_size(impl_.window));
+    frames_shown_ += !impl_.is_covered;
+    return true;
+  }
+
+  uint32_t frames_shown() const { return frames_shown_; }
+  /// One line of what was drawn, for the end.
+  std::string summary(const gpu::Device& device) const {
+    const Options& options = live_.scene().options;
+    return fmt::format("{}: {} frames drawn, the last {}x{}, {}, {} lights, {} shadow maps, {:.1f} ms on {}",
+                       options.pack.string(), frames_drawn_, drawn_.width, drawn_.height,
+                       options.recipes.front().preset, stats_.lights, stats_.shadow_maps, stats_.frame_ms, device.name);
+  }
+
+ private:
+  // What one can change of the settings.
+  struct View {
+    Camera camera;
+    uint32_t width = 0;
+    uint32_t height = 0;
+    float headlight = 0.0f;
+    bool operator==(const View&) const = default;
+  };
+  static View of(const RenderSettings& settings) {
+    return {settings.camera, settings.width, settings.height, settings.headlight};
+  }
+
+  void draw() {
+    stats_ = live_.renderer().draw(live_.settings);
+    live_.settings.previous_centers = stats_.centers;
+    drawn_ = of(live_.settings);
+    ++frames_drawn_;
+    glfwSetWindowTitle(impl_.window, title(live_, stats_).c_str());
+    const Scene& scene = live_.scene();
+    if (std::exchange(judged_, scene.stamp) != scene.stamp)
+      warn_of_black(scene.options, scene.pack.view(), live_.renderer().read_back());
+  }
+
+  Impl& impl_;
+  LiveScene& live_;
+  Swapchain swapchain_;
+  View drawn_;
+  FrameStats stats_;
+  FileStamp judged_;  // of the last pack whose first picture was looked at
+  uint32_t frames_drawn_ = 0;
+  uint32_t frames_shown_ = 0;
 };
 
 Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   glfwSetErrorCallback([](int, const char* description) { glfw_error = description; });
   if (glfwInit() != GLFW_TRUE)
     throw std::runtime_error(fmt::format("no display: use --output FILE.png ({})", glfw_error));
-  if (glfwVulkanSupported() != GLFW_TRUE)
+  if (glfwVulkanSupported() != GLFW_TRUE) {
+    gpu::list_devices();  // throws where there is no loader or driver, and says what brings one
     throw std::runtime_error(fmt::format("Vulkan cannot show pictures here: use --output FILE.png ({})", glfw_error));
+  }
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   impl_->window = glfwCreateWindow(static_cast<int>(options.width), static_cast<int>(options.height), "chandelier-play",
                                    nullptr, nullptr);
@@ -119,6 +205,7 @@ Window::Window(const Options& options) : impl_(std::make_unique<Impl>()) {
   glfwSetInputMode(impl_->window, GLFW_STICKY_KEYS, GLFW_TRUE);  // a press shorter than a frame still counts
   glfwSetKeyCallback(impl_->window, &Impl::on_key);
   glfwSetScrollCallback(impl_->window, &Impl::on_scroll);
+  glfwSetWindowRefreshCallback(impl_->window, &Impl::on_refresh);
 }
 
 Window::~Window() = default;
@@ -133,33 +220,29 @@ void Window::run(LiveScene& live, const gpu::Device& device) {
   GLFWwindow* const window = impl_->window;
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   gpu::check(glfwCreateWindowSurface(device.instance, window, nullptr, &surface), "glfwCreateWindowSurface");
-  Swapchain swapchain(device, surface);
+  Screen screen(*impl_, live, device, surface);
   impl_->speed_m_per_s = speed_through(live.scene().pack);
   std::signal(SIGINT, [](int) { asked_to_end = 1; });
   std::signal(SIGTERM, [](int) { asked_to_end = 1; });
 
-  const uint32_t most_frames = live.scene().options.frames.value_or(UINT32_MAX);
+  const std::optional<uint32_t> most_frames = live.scene().options.frames;
   auto before = std::chrono::steady_clock::now();
-  uint32_t frames = 0;
-  while (!glfwWindowShouldClose(window) && asked_to_end == 0 && frames < most_frames) {
-    glfwPollEvents();
-    const VkExtent2D size = framebuffer_size(window);
-    if (size.width == 0 || size.height == 0) {
-      glfwWaitEventsTimeout(0.1);
-      continue;
-    }
+  bool is_idle = false;
+  while (!glfwWindowShouldClose(window) && asked_to_end == 0 &&
+         screen.frames_shown() < most_frames.value_or(UINT32_MAX)) {
+    if (is_idle)
+      glfwWaitEventsTimeout(kNap_s);
+    else
+      glfwPollEvents();
     const auto now = std::chrono::steady_clock::now();
-    impl_->look(live.settings.camera);
-    impl_->fly(live.settings.camera, std::chrono::duration<float>(now - before).count());
+    const float seconds = is_idle ? kFirstStep_s : std::chrono::duration<float>(now - before).count();
     before = now;
-    live.settings.width = size.width;
-    live.settings.height = size.height;
-    live.follow();
-    const FrameStats stats = live.renderer().draw(live.settings);
-    live.settings.previous_centers = stats.centers;
-    if (swapchain.show(live.renderer().shown_image(), size, framebuffer_size(window))) ++frames;
-    glfwSetWindowTitle(window, title(live, stats).c_str());
+    is_idle = impl_->is_minimised();
+    if (is_idle) continue;
+    impl_->steer(live, seconds);
+    is_idle = !screen.update(most_frames.has_value());
   }
+  fmt::print(stderr, "{}\n", screen.summary(device));
 }
 
 }  // namespace chandelier::player

@@ -19,12 +19,14 @@ class Window {
 
   /// What the Vulkan instance must have to show pictures here.
   std::vector<const char*> instance_extensions() const;
-  /// Draws until the window is closed, Esc is pressed, a signal asks to end, or the frames asked for are drawn. The
+  /// Shows the scene until the window is closed, Esc is pressed, a signal asks to end, or the frames asked for are
+  /// drawn; then says on stderr how many were. Draws when something changed, or always where frames are asked for. The
   /// camera flies through the scene, as it is at the start, in ten seconds. Throws.
   void run(LiveScene& live, const gpu::Device& device);
 
  private:
   struct Impl;
+  class Screen;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -14,6 +14,7 @@ import unittest
 import numpy
 
 from play_tool import LIGHTS, PATIENCE_S, PLAY, PlayTest, SMALL, bake, main
+from x11_tool import ICONIC, NORMAL, XWindow
 
 
 class OnADisplay(PlayTest):
@@ -41,11 +42,12 @@ class OnADisplay(PlayTest):
                              stdout=subprocess.PIPE).stdout
         return numpy.frombuffer(raw, numpy.uint8).reshape(240, 320, 3)
 
-    def picture(self, pack, *options):
+    def picture(self, pack, *options, size=(96, 54)):
         """As chandelier-play draws it without a window."""
-        self.play_well(pack, "--output", self.folder / "frame.png", *SMALL, *options)
+        small = ["--size", f"{size[0]}x{size[1]}", *SMALL[2:]]
+        self.play_well(pack, "--output", self.folder / "frame.png", *small, *options)
         raw = subprocess.run(["convert", self.folder / "frame.png", "-depth", "8", "rgb:-"], check=True, stdout=subprocess.PIPE).stdout
-        return numpy.frombuffer(raw, numpy.uint8).reshape(54, 96, 3)
+        return numpy.frombuffer(raw, numpy.uint8).reshape(size[1], size[0], 3)
 
 
 class Window(OnADisplay):
@@ -88,8 +90,8 @@ def edited(scene, path, edit):
     path.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest)
 
 
-@unittest.skipUnless(all(map(shutil.which, ("import", "convert", "xwininfo"))), "ImageMagick or xwininfo is not installed")
-class Reload(OnADisplay):
+class ShownFile(OnADisplay):
+    """A window that shows a file, and another pack to put in its place."""
     FEWER = 12  # lights of the other pack
 
     @classmethod
@@ -155,6 +157,12 @@ class Reload(OnADisplay):
         self.window.send_signal(signal.SIGTERM)
         self.assertEqual(self.window.wait(PATIENCE_S), 0, self.said())
 
+
+NEEDED = ("import", "convert", "xwininfo")
+
+
+@unittest.skipUnless(all(map(shutil.which, NEEDED)), "ImageMagick or xwininfo is not installed")
+class Reload(ShownFile):
     def test_a_pack_that_is_replaced_is_shown(self):
         self.open("--validation")
         self.assertRegex(self.title(), rf"\Ashown.chandelier: reference, .* {LIGHTS} lights, {LIGHTS} shadow maps\Z")
@@ -168,14 +176,15 @@ class Reload(OnADisplay):
         self.wait_for_picture(self.pack)
         self.assertRegex(self.title(), rf"\Ashown.chandelier: reference, .* {LIGHTS} lights")
         self.close()
-        self.assertEqual(self.said()[1:], ["chandelier-play: 0 messages from the validation layer"])
+        self.assertRegex(self.said()[1], rf"\A{re.escape(str(self.shown))}: \d+ frames drawn, the last 96x54, reference, {LIGHTS} lights")
+        self.assertEqual(self.said()[2:], ["chandelier-play: 0 messages from the validation layer"])
 
     def test_what_cannot_be_shown_is_told_once_and_the_older_one_stays(self):
         whole = self.other.read_bytes()
         damaged = whole[:-5000] + bytes([whole[-5000] ^ 0x55]) + whole[-4999:]
         self.open()
         for content, says in ((b"", "too short for a pack"), (b"no pack at all\n" * 99, "not a Chandelier pack"),
-                              (damaged, ""), (whole[:8] + b"\1\0\0\0" + whole[12:], "a pack of another version, bake it again")):
+                              (damaged, ""), (whole[:8] + b"\1\0\0\0" + whole[12:], "a pack of an older chandelier-bake: bake it again")):
             with self.subTest(says=says):
                 self.put(content)
                 self.wait_for_warning(says)
@@ -212,6 +221,73 @@ class Reload(OnADisplay):
         self.close()
         lights = [re.search(r"a shadow map for each of (\d+) lights: selection by error makes 9", line) for line in self.said()]
         self.assertEqual([int(found[1]) for found in lights if found], [LIGHTS, self.FEWER])  # kept anew
+
+
+@unittest.skipUnless(all(map(shutil.which, NEEDED)), "ImageMagick or xwininfo is not installed")
+class Idle(ShownFile):
+    """Frames are counted, not seconds: a window that draws without a reason draws many in each of these."""
+    REST_S = 2
+
+    def open(self, *options):
+        super().open(*options)
+        self.x = XWindow(self.env["DISPLAY"], self.shown.name)
+        self.addCleanup(self.x.close)
+
+    def frames(self):
+        """Closes the window: how many it has drawn."""
+        self.close()
+        return int(re.search(r": (\d+) frames drawn", "\n".join(self.said()))[1])
+
+    def test_a_window_that_nobody_touches_draws_once(self):
+        self.open()
+        time.sleep(self.REST_S)
+        self.assertEqual(self.frames(), 1)
+
+    def test_what_lay_under_another_window_is_shown_again_without_drawing(self):
+        self.open()
+        for _ in range(3):
+            self.x.cover_and_uncover()
+            self.wait_for_picture(self.pack)
+            time.sleep(0.3)
+        self.assertEqual(self.frames(), 1)
+
+    def test_a_key_draws_and_a_rest_follows(self):
+        self.open()
+        pictures = {"off": self.pictures[self.pack], "on": self.picture(self.pack, "--headlight", "on")}
+        self.assertGreater(int((pictures["on"] != pictures["off"]).sum()), 1000)
+        for light in ("on", "off", "on"):
+            self.x.key("h")
+            self.wait(lambda: numpy.array_equal(self.screen()[:54, :96], pictures[light]), f"the headlight {light}")
+        time.sleep(self.REST_S)
+        self.assertEqual(self.frames(), 4)
+
+    def test_flying_draws(self):
+        self.open()
+        self.x.key("w")
+        self.wait(lambda: not numpy.array_equal(self.screen()[:54, :96], self.pictures[self.pack]), "another picture")
+        self.assertGreater(self.frames(), 1)
+
+    def test_another_size_draws(self):
+        self.open()
+        self.x.resize(128, 72)
+        larger = self.picture(self.pack, size=(128, 72))
+        self.wait(lambda: numpy.array_equal(self.screen()[:72, :128], larger), "the larger picture")
+        time.sleep(self.REST_S)
+        self.assertLessEqual(self.frames(), 3)  # the size may be told before the window has it
+
+    def test_a_new_pack_is_shown_by_an_idle_window_but_not_by_a_minimised_one(self):
+        self.open()
+        time.sleep(self.REST_S)
+        self.put(self.other.read_bytes())
+        self.wait_for_picture(self.other)
+        self.x.set_state(ICONIC)
+        time.sleep(0.5)
+        self.put(self.pack.read_bytes())
+        time.sleep(self.REST_S)
+        numpy.testing.assert_array_equal(self.screen()[:54, :96], self.pictures[self.other])
+        self.x.set_state(NORMAL)
+        self.wait_for_picture(self.pack)
+        self.assertEqual(self.frames(), 3)
 
 
 if __name__ == "__main__":

@@ -85,6 +85,26 @@ TEST_F(LiveSceneTest, ShowsACopyOfItsFile) {
   EXPECT_EQ(live.scene().pack.view().lights[4].range_m, 3.0f);
 }
 
+// The pack decides until someone does.
+TEST_F(LiveSceneTest, TheHeadlightFollowsThePackUntilItIsToggled) {
+  put(hall(0, 6));
+  LiveScene live = open({});
+  EXPECT_EQ(live.settings.headlight, kHeadlightOn);
+  put(hall(3, 6));
+  follow_until(live, [&] { return lights(live) == 3; });
+  EXPECT_EQ(live.settings.headlight, 0.0f);
+  live.toggle_headlight();
+  EXPECT_EQ(live.settings.headlight, kHeadlightOn);
+  put(hall(4, 6));
+  follow_until(live, [&] { return lights(live) == 4; });
+  EXPECT_EQ(live.settings.headlight, kHeadlightOn);
+  live.toggle_headlight();
+  put(hall(0, 7));
+  follow_until(live, [&] { return lights(live) == 0; });
+  EXPECT_EQ(live.settings.headlight, 0.0f);
+  live.renderer().draw(live.settings);
+}
+
 TEST_F(LiveSceneTest, KeepsTheBudgetAnew) {
   put(hall(9, 6));
   LiveScene live = open({"--preset", "lightcluster", "--d-init", "0.1", "--max-shadow-maps", "4"});

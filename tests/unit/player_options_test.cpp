@@ -53,6 +53,17 @@ TEST(PlayerOptions, Defaults) {
   EXPECT_EQ(stage_answer(options.recipes[0].recipe, "select"), "per-light");
 }
 
+TEST(PlayerOptions, TheHeadlightIsLeftToThePackUnlessAsked) {
+  EXPECT_FALSE(accepted("scene.chandelier").headlight);
+  EXPECT_FALSE(accepted("scene.chandelier --headlight auto").headlight);
+  EXPECT_EQ(accepted("scene.chandelier --headlight on").headlight, kHeadlightOn);
+  EXPECT_EQ(accepted("scene.chandelier --headlight off").headlight, 0.0f);
+  EXPECT_EQ(accepted("scene.chandelier --headlight 2.5").headlight, 2.5f);
+  for (const char* wrong : {"bright", "-1", "nan", "1e7"})
+    expect_refused(std::string("scene.chandelier --headlight ") + wrong,
+                   std::string("--headlight: must be auto, on, off or a strength from 0 to 1e6 (") + wrong + ")");
+}
+
 TEST(PlayerOptions, EveryAnswerOfEveryStageIsAnOption) {
   for (const StageChoices& choices : stage_choices())
     for (const std::string_view chosen : choices.answers) {

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// Views are tried with a coarse grid of rays, and judged by how many of them end on a surface that a light reaches.
+#include "player/default_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "lights/light_samples.h"
+#include "lights/pack_lights.h"
+
+namespace chandelier::player {
+namespace {
+
+constexpr uint32_t kColumns = 16, kRows = 9;
+constexpr float kGridAspect = 16.0f / 9.0f;  // whatever the picture's: another size shall not be another view
+constexpr size_t kMostLights = 512;          // that are asked, evenly from all
+constexpr size_t kMostShadowRays = 8;        // for a place, to what would be its brightest lights
+constexpr float kEnough = 0.1f;              // of the surfaces in view are lit
+
+constexpr size_t kPlaces = 4;  // to stand at, far from each other
+constexpr int kWays = 8;       // to step back from each
+constexpr float kStepBack = 0.85f;
+constexpr float kEyeHeight_m = 1.6f;
+constexpr float kEyeShare = 0.6f;         // of the height of a low room
+constexpr float kTargetShare = 0.8f;      // of the eye's height: a little down
+constexpr float kFarthestShare = 0.5f;    // of a light's range
+constexpr float kInsideYfov_rad = 1.05f;  // 60 degrees
+constexpr float kFarEnough_m = 30.0f;     // a farther surface is no better
+constexpr float kFarAway_m = 1e6f;
+constexpr int kMostFloors = 4;
+
+const glm::vec3 kDown(0.0f, -1.0f, 0.0f);
+
+struct Box {
+  glm::vec3 low{INFINITY};
+  glm::vec3 high{-INFINITY};
+};
+
+class Viewer {
+ public:
+  explicit Viewer(const pack::View& pack) : pack_(pack), rays_(pack), scene_(pack, rays_) {
+    const size_t count = pack.lights.size();
+    const size_t asked = std::min(count, kMostLights);
+    for (size_t i = 0; i < asked; ++i) lights_.push_back(&pack.lights[i * count / asked]);
+  }
+
+  struct Seen {
+    uint32_t surfaces = 0;  // that a light could change
+    uint32_t lit = 0;       // of them
+    float reach_m = 0.0f;   // sum of how far the lit ones are: a wall before the eye is no view
+  };
+  Seen see(const Camera& camera) const;
+
+  /// Of all that a light could change and that does not glow itself.
+  Box unglowing() const;
+  /// Cameras that stand near lights and look past them, those that step back farthest first.
+  std::vector<Camera> inside() const;
+
+ private:
+  struct Stand {
+    Camera camera;
+    float back_m;  // from below the light
+  };
+
+  bool is_lit(const SeenPlace& place) const;
+  float way_ahead_m(const glm::vec3& from_ws, const glm::vec3& way, float most_m) const;
+  std::vector<const pack::Light*> scattered_lights() const;
+  void stand_near(const pack::Light& light, std::vector<Stand>& stands) const;
+
+  pack::View pack_;
+  rays::PackRays rays_;
+  SampledScene scene_;
+  std::vector<const pack::Light*> lights_;
+};
+
+bool Viewer::is_lit(const SeenPlace& place) const {
+  if (lights_.empty()) return true;
+  std::vector<std::pair<float, const pack::Light*>> brightest;
+  for (const pack::Light* light : lights_) {
+    const Incoming in = incoming(*light, place.position_ws);
+    const float lx = glm::dot(in.illuminance, glm::vec3(1.0f)) * glm::dot(place.normal_ws, in.to_light);
+    if (lx > 0.0f) brightest.emplace_back(-lx, light);
+  }
+  const size_t asked = std::min(brightest.size(), kMostShadowRays);
+  std::partial_sort(brightest.begin(), brightest.begin() + static_cast<std::ptrdiff_t>(asked), brightest.end());
+  return std::any_of(brightest.begin(), brightest.begin() + static_cast<std::ptrdiff_t>(asked), [&](const auto& each) {
+    return each.second->shadowless != 0 || sees(rays_, *each.second, place.position_ws);
+  });
+}
+
+Viewer::Seen Viewer::see(const Camera& camera) const {
+  const CameraAxes axes = axes_of(camera);
+  const float half_height = std::tan(camera.yfov_rad * 0.5f);
+  Seen seen;
+  uint64_t rays_cast = 0;
+  for (uint32_t cell = 0; cell < kColumns * kRows; ++cell) {
+    const float x = 2.0f * (static_cast<float>(cell % kColumns) + 0.5f) / kColumns - 1.0f;
+    const float y = 1.0f - 2.0f * (static_cast<float>(cell / kColumns) + 0.5f) / kRows;
+    const glm::vec3 way =
+        glm::normalize(axes.forward + axes.right * (x * half_height * kGridAspect) + axes.up * (y * half_height));
+    const auto hit = first_seen(scene_, camera.eye_ws, way, rays_cast);
+    if (!hit || scene_.materials[hit->material].unlit) continue;
+    ++seen.surfaces;
+    if (!is_lit(seen_place(*hit, camera.eye_ws, way))) continue;
+    ++seen.lit;
+    seen.reach_m += std::min(hit->distance_m, kFarEnough_m);
+  }
+  return seen;
+}
+
+Box Viewer::unglowing() const {
+  Box box;
+  for (const pack::BatchInstance& draw : pack_.batch_instances) {
+    const MeanMaterial& material = scene_.materials[pack_.batches[draw.batch].material];
+    if (material.unlit || material.emissive != glm::vec3(0.0f)) continue;
+    box.low = glm::min(box.low, draw.bounds_min_ws);
+    box.high = glm::max(box.high, draw.bounds_max_ws);
+  }
+  return box;
+}
+
+float Viewer::way_ahead_m(const glm::vec3& from_ws, const glm::vec3& way, float most_m) const {
+  const auto hit = rays_.first_hit(from_ws, way, most_m);
+  return hit ? hit->distance_m : most_m;
+}
+
+// The one nearest to their middle, then always the one farthest from those chosen.
+std::vector<const pack::Light*> Viewer::scattered_lights() const {
+  std::vector<const pack::Light*> placed;
+  glm::dvec3 sum(0.0);
+  for (const pack::Light* light : lights_) {
+    if (is_directional(*light)) continue;
+    placed.push_back(light);
+    sum += glm::dvec3(light->position_ws);
+  }
+  if (placed.empty()) return placed;
+  const glm::vec3 middle(sum / static_cast<double>(placed.size()));
+  std::vector<float> apart_m;
+  for (const pack::Light* light : placed) apart_m.push_back(-glm::distance(light->position_ws, middle));
+  std::vector<const pack::Light*> chosen;
+  while (chosen.size() < std::min(kPlaces, placed.size())) {
+    const auto farthest = std::max_element(apart_m.begin(), apart_m.end());
+    const pack::Light* const light = placed[static_cast<size_t>(farthest - apart_m.begin())];
+    for (size_t i = 0; i < placed.size(); ++i) {
+      const float distance = glm::distance(placed[i]->position_ws, light->position_ws);
+      apart_m[i] = chosen.empty() ? distance : std::min(apart_m[i], distance);
+    }
+    chosen.push_back(light);
+  }
+  return chosen;
+}
+
+// The room between floor and ceiling that a light is in or, where that is but its bulb or shade, the one below.
+struct Room {
+  float floor_y;
+  float height_m;
+};
+
+std::optional<Room> room_of(const rays::PackRays& rays, const glm::vec3& light_ws) {
+  std::vector<Room> rooms;
+  glm::vec3 from = light_ws;
+  for (int i = 0; i < kMostFloors; ++i) {
+    const auto hit = rays.first_hit(from, kDown, kFarAway_m);
+    if (!hit) break;
+    rooms.push_back({from.y - hit->distance_m, hit->distance_m});
+    from.y -= hit->distance_m + rays::PackRays::end_gap_m(light_ws, from + kDown * hit->distance_m);
+  }
+  if (rooms.empty()) return std::nullopt;
+  float highest_m = 0.0f;
+  for (const Room& room : rooms) highest_m = std::max(highest_m, room.height_m);
+  const auto room =
+      std::find_if(rooms.begin(), rooms.end(), [&](const Room& each) { return each.height_m >= 0.5f * highest_m; });
+  if (room == rooms.begin()) {
+    const auto ceiling = rays.first_hit(light_ws, -kDown, kFarAway_m);
+    room->height_m += ceiling ? ceiling->distance_m : kFarAway_m;
+  }
+  return *room;
+}
+
+// Steps back from below the light as far as that goes, and looks to where it came from: past it to the other side.
+void Viewer::stand_near(const pack::Light& light, std::vector<Stand>& stands) const {
+  const auto room = room_of(rays_, light.position_ws);
+  const float eye_m = room ? std::min(kEyeHeight_m, kEyeShare * room->height_m) : 0.0f;
+  glm::vec3 place = light.position_ws;
+  if (room) place.y = room->floor_y + eye_m;
+  const glm::vec3 target = place - glm::vec3(0.0f, (1.0f - kTargetShare) * eye_m, 0.0f);
+  for (int i = 0; i < kWays; ++i) {
+    const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / kWays;
+    const glm::vec3 back(std::cos(angle), 0.0f, std::sin(angle));
+    const float free_m = way_ahead_m(place, back, kFarthestShare * light.range_m);
+    const glm::vec3 eye = place + back * (kStepBack * free_m);
+    if (!(glm::distance(eye, place) > 0.25f * eye_m) || !(glm::distance(eye, target) > 1e-6f)) continue;
+    Camera camera = camera_looking_at(eye, target, kInsideYfov_rad);
+    camera.znear_m = std::min(camera.znear_m, 0.5f * (1.0f - kStepBack) * free_m);
+    stands.push_back({camera, kStepBack * free_m});
+  }
+}
+
+std::vector<Camera> Viewer::inside() const {
+  std::vector<Stand> stands;
+  for (const pack::Light* light : scattered_lights()) stand_near(*light, stands);
+  std::stable_sort(stands.begin(), stands.end(), [](const Stand& a, const Stand& b) { return a.back_m > b.back_m; });
+  std::vector<Camera> cameras;
+  for (const Stand& stand : stands) cameras.push_back(stand.camera);
+  return cameras;
+}
+
+bool is_enough(const Viewer::Seen& seen) {
+  return seen.lit > 0 && static_cast<float>(seen.lit) >= kEnough * static_cast<float>(seen.surfaces);
+}
+
+}  // namespace
+
+NamedCamera default_view(const pack::View& pack, float aspect) {
+  const auto framing = [](const Box& box, float of) { return camera_framing(box.low, box.high, of); };
+  const Box all{pack.bake_info->bounds_min_ws, pack.bake_info->bounds_max_ws};
+  const glm::dvec3& origin_m = pack.bake_info->origin_m;
+  const NamedCamera whole{"", framing(all, aspect), origin_m, ChosenView::whole};
+  if (pack.batch_instances.empty()) return whole;
+  const Viewer viewer(pack);
+  const Viewer::Seen seen_whole = viewer.see(framing(all, kGridAspect));
+  if (is_enough(seen_whole)) return whole;
+
+  const Box box = viewer.unglowing();
+  const bool is_smaller =
+      box.low.x <= box.high.x && glm::distance(box.low, box.high) < 0.9f * glm::distance(all.low, all.high);
+  if (is_smaller && is_enough(viewer.see(framing(box, kGridAspect))))
+    return {"", framing(box, aspect), origin_m, ChosenView::without_sky};
+
+  NamedCamera best = whole;
+  float farthest_m = 0.0f;
+  for (const Camera& camera : viewer.inside()) {
+    const Viewer::Seen seen = viewer.see(camera);
+    if (seen.lit <= seen_whole.lit || seen.reach_m <= farthest_m) continue;
+    farthest_m = seen.reach_m;
+    best = {"", camera, origin_m, ChosenView::inside};
+  }
+  return best;
+}
+
+}  // namespace chandelier::player
