@@ -48,15 +48,23 @@ Incoming incoming(const pack::Light& light, const glm::vec3& p) {
   return {radiant * falloff, to_light};
 }
 
-bool sees(const rays::PackRays& rays, const pack::Light& light, const glm::vec3& place_ws) {
-  if (is_directional(light))
-    return !rays.first_hit(place_ws, -light.direction_ws, far_away_m, rays::Meets::casters);
-  // What is nearer to the light than the near plane of its shadow map casts no shadow.
+// How far from the light something first throws a shadow on a place; nothing where nothing does. What is nearer to the
+// light than the near plane of its shadow map throws none.
+static std::optional<float> first_caster_m(const rays::PackRays& rays, const pack::Light& light,
+                                           const glm::vec3& place_ws) {
   const glm::vec3 d = place_ws - light.position_ws;
   const float distance = glm::length(d);
   const float near_m = pack::shadow_near_m(light);
-  if (distance <= near_m) return true;
-  return !rays.blocked(place_ws, light.position_ws + d * (near_m / distance));
+  if (distance <= near_m) return std::nullopt;
+  const glm::vec3 from = light.position_ws + d * (near_m / distance);
+  const float way_m = distance - near_m - rays::PackRays::end_gap_m(from, place_ws);
+  const auto hit = rays.first_hit(from, d / distance, std::max(way_m, 1e-6f), rays::Meets::casters);
+  return hit ? std::optional(hit->distance_m + near_m) : std::nullopt;
+}
+
+bool sees(const rays::PackRays& rays, const pack::Light& light, const glm::vec3& place_ws) {
+  if (is_directional(light)) return !rays.first_hit(place_ws, -light.direction_ws, far_away_m, rays::Meets::casters);
+  return !first_caster_m(rays, light, place_ws);
 }
 
 std::optional<rays::Hit> first_seen(const SampledScene& scene, const glm::vec3& eye_ws, const glm::vec3& way,
@@ -170,14 +178,8 @@ bool LightSamples::is_lit(uint32_t i, const glm::vec3& place_ws) const {
 
 float LightSamples::blocked_at(uint32_t i, const glm::vec3& place_ws) const {
   ++rays_cast_;
-  const glm::vec3 d = place_ws - light(i).position_ws;
-  const float distance = glm::length(d);
-  const float near_m = pack::shadow_near_m(light(i));
-  if (distance <= near_m) return 1.0f;
-  const glm::vec3 from = light(i).position_ws + d * (near_m / distance);
-  const float way_m = distance - near_m - rays::PackRays::end_gap_m(from, place_ws);
-  const auto hit = scene_.rays.first_hit(from, d / distance, std::max(way_m, 1e-6f), rays::Meets::casters);
-  return hit ? (hit->distance_m + near_m) / distance : 1.0f;
+  const auto caster_m = first_caster_m(scene_.rays, light(i), place_ws);
+  return caster_m ? *caster_m / glm::distance(place_ws, light(i).position_ws) : 1.0f;
 }
 
 }  // namespace chandelier

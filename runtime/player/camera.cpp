@@ -92,7 +92,8 @@ std::string camera_numbers(const pack::View& pack, const Camera& camera) {
   const double finest = std::pow(10.0, std::floor(std::log10(size)) - 5.0);
   const auto rounded = [finest](double value) { return std::round(value / finest) * finest; };
   const glm::dvec3 eye = pack.bake_info->origin_m + glm::dvec3(camera.eye_ws);
-  const glm::dvec3 target = eye + glm::dvec3(camera.forward_ws);
+  // So far ahead that rounding turns the view by no more than a hundredth of a degree.
+  const glm::dvec3 target = eye + glm::dvec3(camera.forward_ws) * std::max(1.0, 1e4 * finest);
   return fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.4g}", rounded(eye.x), rounded(eye.y),
                      rounded(eye.z), rounded(target.x), rounded(target.y), rounded(target.z),
                      camera.yfov_rad * 180.0f / kPi);

@@ -68,9 +68,15 @@ glm::vec3 position_from(const glm::vec3& origin_ws, const pack::Instance& instan
 
 // Where rays of a picture are reckoned from: near its eye, so that what it sees is hardly rounded; the world's own
 // origin for most scenes.
+constexpr float origin_step_m = 1024.0f;
+
 glm::vec3 origin_near(const glm::vec3& eye_ws) {
-  constexpr float step_m = 1024.0f;
-  return glm::round(eye_ws / step_m) * step_m;
+  return glm::round(eye_ws / origin_step_m) * origin_step_m;
+}
+
+// Half a step would do, but an eye that goes to and fro there would have the scene made anew each time.
+bool is_far_from(const glm::vec3& eye_ws, const glm::vec3& origin_ws) {
+  return glm::any(glm::greaterThan(glm::abs(eye_ws - origin_ws), glm::vec3(0.75f * origin_step_m)));
 }
 
 // As shadows/raster/caster.glsl and shading/uv_transform.glsl.
@@ -306,8 +312,8 @@ void RayScene::answer(const VisibilityQuery& query) const {
 VisibilitySource ray_traced_visibility(const pack::View& pack) {
   const auto scene = std::make_shared<std::unique_ptr<const RayScene>>();
   return [pack, scene](const VisibilityQuery& query) {
-    const glm::vec3 origin_ws = origin_near(query.eye_ws);
-    if (!*scene || (*scene)->origin_ws() != origin_ws) *scene = std::make_unique<const RayScene>(pack, origin_ws);
+    if (*scene && is_far_from(query.eye_ws, (*scene)->origin_ws())) scene->reset();  // before another takes memory
+    if (!*scene) *scene = std::make_unique<const RayScene>(pack, origin_near(query.eye_ws));
     (*scene)->answer(query);
   };
 }

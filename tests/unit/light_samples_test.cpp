@@ -27,6 +27,21 @@ TEST(LightSamplesTest, PointsAreLitFromTheirSideOfTheWallAlone) {
   EXPECT_GT(right, 500u);
 }
 
+// As the lamp's shadow map has it, whose near plane lies before what is nearest to it.
+TEST(LightSamplesTest, WhatHangsCloseToALampShadowsWhatIsFarBehind) {
+  test::Scene scene;
+  const uint32_t white = scene.add_material(test::plain_material(glm::vec3(0.5f)));
+  scene.add(test::level_square(glm::vec3(0, 2.001f, 0), 4), white);
+  pack::Light lamp = test::point_light({0, 2, 0}, 10, 20);
+  lamp.nearest_caster_m = 0.001f;
+  scene.lights.push_back(lamp);
+  const Sampled s(scene);
+  for (const float x : {0.0f, 0.1f, 1.0f, 5.0f}) {
+    EXPECT_FALSE(sees(s.rays, lamp, {x, 7, 0})) << x;
+    EXPECT_TRUE(sees(s.rays, lamp, {x, -3, 0})) << x;
+  }
+}
+
 // As it is drawn: a room's ceiling does not hide the room from above, but where its material has two sides.
 TEST(LightSamplesTest, BacksHideNothing) {
   for (const bool double_sided : {false, true}) {

@@ -36,6 +36,21 @@ TEST(PlayerCamera, LooksAlongEveryDirectionUpright) {
   }
 }
 
+TEST(PlayerCamera, NumbersThatArePrintedLookTheSameWay) {
+  pack::Contents contents;
+  contents.bake_info.origin_m = {500000, 0, -250000.5};
+  const pack::View pack = pack::view_of(contents);
+  for (const float away_m : {0.0f, 9000.0f, 10000.0f, 100000.0f}) {
+    const glm::vec3 eye(away_m + 0.25f, 1.7f, -0.5f * away_m);
+    const Camera camera = camera_looking_at(eye, eye + glm::vec3(3, -1, 2), 0.8f);
+    const auto read = camera_from_numbers(camera_numbers(pack, camera));
+    ASSERT_TRUE(read) << away_m;
+    const Camera again = in_world(*read, contents.bake_info.origin_m);
+    EXPECT_GT(glm::dot(again.forward_ws, camera.forward_ws), 0.999999f) << away_m;
+    EXPECT_LT(glm::distance(again.eye_ws, eye), 1e-4f + 2e-5f * away_m) << away_m;
+  }
+}
+
 TEST(PlayerCamera, FramesAllCornersInWideAndTallPictures) {
   const glm::vec3 low(-2, 0, -7);
   const glm::vec3 high(4, 3, 1);
