@@ -27,9 +27,9 @@ frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t face, float te
 }
 
 // How far beyond a receiver a filter reads, per metre from the map's centre: a few texels, and as much of the area
-// light as a receiver sees a quarter of the range away.
+// light as a receiver sees a quarter of the range away; half as much again, where pixels share what they read.
 float filter_reach(const frame::ShadowMap& map, float range_m, float texel_m) {
-  return 4.0f * texel_m + std::min(0.5f, map.filter_radius_m / (0.25f * std::max(range_m, 1e-6f)));
+  return 6.0f * texel_m + 1.5f * std::min(0.5f, map.filter_radius_m / (0.25f * std::max(range_m, 1e-6f)));
 }
 
 // Is anything that the spot light reaches on the pyramid of a face, seen from the map's centre? What it reaches is a
