@@ -33,17 +33,6 @@ Recipe clustered(Filter filter, float d_init_m, uint32_t face_size_px) {
   return recipe;
 }
 
-// Everything that faces the light is lit.
-RenderSettings without_shadows(RenderSettings settings) {
-  settings.recipe.select = Select::per_light;
-  settings.recipe.filter = Filter::rays;
-  settings.recipe.deliver = Deliver::textures;
-  settings.visibility = [](const VisibilityQuery& query) {
-    std::fill(query.visibility.begin(), query.visibility.end(), uint8_t{255});
-  };
-  return settings;
-}
-
 Picture frame(Renderer& renderer, const RenderSettings& settings) {
   renderer.draw(settings);
   return renderer.read_back();

@@ -2,6 +2,7 @@
 // What tests on a real Vulkan device share: the device, silence of the validation layer, cameras and pictures.
 #include "gpu_test.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -56,6 +57,14 @@ RenderSettings settings_for(const Camera& camera, uint32_t width, uint32_t heigh
   settings.width = width;
   settings.height = height;
   settings.exposure_ev = 0.0f;
+  return settings;
+}
+
+RenderSettings without_shadows(RenderSettings settings) {
+  settings.recipe.select = Select::per_light;
+  settings.recipe.filter = Filter::rays;
+  settings.recipe.deliver = Deliver::textures;
+  settings.visibility = [](const VisibilityQuery& query) { std::ranges::fill(query.visibility, uint8_t{255}); };
   return settings;
 }
 

@@ -22,6 +22,9 @@ Camera look(const glm::vec3& eye, const glm::vec3& target, float yfov_rad);
 /// A picture of `width` by `height`, with the recipe's other settings as the tests want them: no ambient, exposure 0.
 RenderSettings settings_for(const Camera& camera, uint32_t width, uint32_t height, const Recipe& recipe);
 
+/// The same where everything that faces a light is lit by it.
+RenderSettings without_shadows(RenderSettings settings);
+
 Picture draw(gpu::Device& device, const Scene& scene, const RenderSettings& settings);
 
 glm::vec3 radiance_at(const Picture& picture, uint32_t x, uint32_t y);

@@ -17,8 +17,7 @@ layout(binding = 1, scalar) readonly buffer Maps { ShadowMap maps[]; };
 layout(binding = 2, scalar) readonly buffer Views { ShadowView views[]; };
 layout(binding = 3, scalar) readonly buffer Questions { Question questions[]; };
 layout(binding = 4, scalar) writeonly buffer Answers { float answers[]; };
-layout(binding = 5) uniform samplerCubeArrayShadow cubes;
-layout(binding = 6) uniform sampler2DArrayShadow layers;
+layout(binding = 5) uniform sampler2DArray layer_depths;
 
 #include "shadows/filter/hard.glsl"
 

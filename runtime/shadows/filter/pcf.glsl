@@ -3,7 +3,7 @@
 // radius follows the area light that stands for a cluster.
 #ifndef CHANDELIER_PCF_GLSL
 #define CHANDELIER_PCF_GLSL
-#include "shadows/filter/receiver_disc.glsl"
+#include "shadows/filter/corner.glsl"
 
 // A disc light of radius R casts a penumbra of radius R * (distance to receiver / distance to blocker - 1). PCF knows no
 // blocker: it takes one that stands four fifths of the way along, which came nearest to the reference on the example scenes
@@ -25,12 +25,18 @@ struct Lit {
 
 struct TapSums {
   float lit;
-  vec2 rim;      // of the outer half: each tap's way from the centre, unit length
-  vec2 lit_rim;  // times what is lit of it
+  vec2 turns;  // each tap's way from the centre, unit length
+  vec2 lit_turns;  // times what is lit of it
+  vec2 rim;  // the same, of the outer half
+  vec2 lit_rim;
 };
+
+const TapSums NO_TAPS = TapSums(0.0, vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0));
 
 void add_tap(inout TapSums sums, float lit, vec2 turn, bool at_rim) {
   sums.lit += lit;
+  sums.turns += turn;
+  sums.lit_turns += lit * turn;
   if (at_rim) {
     sums.rim += turn;
     sums.lit_rim += lit * turn;
@@ -44,32 +50,63 @@ Lit lit_disc(TapSums sums, uint taps, mat2x3 axes, float radius_m) {
   return Lit(part, axes * ((sums.lit_rim - part * sums.rim) * (4.0 / (radius_m * float(taps)))));
 }
 
-// Of so many taps, a multiple of four.
+// Towards what is lit: nothing where all taps are alike, but some way nevertheless.
+vec2 way_to_lit(TapSums sums, uint taps) {
+  return sums.lit_turns - sums.lit / float(taps) * sums.turns + vec2(1e-6, 0.0);
+}
+
+// Of so many taps, a multiple of four. Where they disagree, once more for each surface that is found beside.
 Lit cube_pcf(CubeDisc disc, float radius_m, uint taps) {
-  TapSums sums = TapSums(0.0, vec2(0.0), vec2(0.0));
-  vec2 turn = vec2(1.0, 0.0);
-  uint i = 0u;
+  TapSums sums;
+  bool again = false;
+  uint pass = 0u;
   do {
-    for (uint k = 0u; k < 4u; ++k, ++i) {
-      Tap tap = cube_tap(disc, radius_m * tap_ring(i, taps) * turn);
-      add_tap(sums, texture(cubes, vec4(tap.at, disc.cube), tap.compared), turn, 2u * i >= taps);
-      turn = NEXT_TURN * turn;
+    sums = NO_TAPS;
+    vec2 turn = vec2(1.0, 0.0);
+    uint i = 0u;
+    do {
+      for (uint k = 0u; k < 4u; ++k, ++i) {
+        Tap tap = cube_tap(disc, radius_m * tap_ring(i, taps) * turn);
+        add_tap(sums, texture(cubes, vec4(tap.at, disc.cube), tap.compared), turn, 2u * i >= taps);
+        turn = NEXT_TURN * turn;
+      }
+    } while (i < taps);
+    again = false;
+    if (sums.lit > 0.0 && sums.lit < float(taps) && pass < MOST_BESIDE) {
+      Verdict verdict = cube_verdict(disc, way_to_lit(sums, taps), radius_m);
+      if (verdict.hidden && disc.lone) sums = NO_TAPS;
+      disc.beside = verdict.beside;
+      again = verdict.again;
     }
-  } while (i < taps);
+    ++pass;
+  } while (again);
   return lit_disc(sums, taps, disc.axes, radius_m);
 }
 
 Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m, uint taps) {
-  TapSums sums = TapSums(0.0, vec2(0.0), vec2(0.0));
-  vec2 turn = vec2(1.0, 0.0);
-  uint i = 0u;
+  TapSums sums;
+  bool again = false;
+  uint pass = 0u;
   do {
-    for (uint k = 0u; k < 4u; ++k, ++i) {
-      Tap tap = cascade_tap(disc, radius_m * tap_ring(i, taps) * turn);
-      add_tap(sums, texture(layers, vec4(tap.at, tap.compared)), turn, 2u * i >= taps);
-      turn = NEXT_TURN * turn;
+    sums = NO_TAPS;
+    vec2 turn = vec2(1.0, 0.0);
+    uint i = 0u;
+    do {
+      for (uint k = 0u; k < 4u; ++k, ++i) {
+        Tap tap = cascade_tap(disc, radius_m * tap_ring(i, taps) * turn);
+        add_tap(sums, texture(layers, vec4(tap.at, tap.compared)), turn, 2u * i >= taps);
+        turn = NEXT_TURN * turn;
+      }
+    } while (i < taps);
+    again = false;
+    if (sums.lit > 0.0 && sums.lit < float(taps) && pass < MOST_BESIDE) {
+      Verdict verdict = cascade_verdict(disc, way_to_lit(sums, taps), radius_m);
+      if (verdict.hidden && disc.lone) sums = NO_TAPS;
+      disc.beside = verdict.beside;
+      again = verdict.again;
     }
-  } while (i < taps);
+    ++pass;
+  } while (again);
   return lit_disc(sums, taps, axes, radius_m);
 }
 
@@ -99,7 +136,7 @@ float pcf_visibility(ShadowMap map, Receiver r) {
   if (map.is_directional != 0u) {
     ShadowView cascade = views[cascade_at(map, r.p)];
     float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
-    Lit own = cascade_pcf(cascade_disc(cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m, DISC_TAPS);
+    Lit own = cascade_pcf(cascade_disc(map, cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m, DISC_TAPS);
     return lit_of_block(r.p, facing_mates(r, depth_per_m(cascade)), own, cascade_radius_m);
   }
   float radius_m = pcf_radius(map, r.p);

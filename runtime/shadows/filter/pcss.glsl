@@ -99,10 +99,10 @@ float cube_pcss(ShadowMap map, Receiver r) {
 }
 
 // A directional cluster's light stands at z_far. The search disc is what it casts from the cascade's near plane.
-float cascade_pcss(ShadowView cascade, float light_radius_m, Receiver r) {
+float cascade_pcss(ShadowMap map, ShadowView cascade, Receiver r) {
   float smoothing_m = SMOOTHING_TEXELS * cascade.texel_m;
-  CascadeDisc disc = cascade_disc(cascade, r.p, r.n, r.axes);
-  float spread_m = light_radius_m / (view.z_far_m * length(depth_per_m(cascade)));  // over the whole depth
+  CascadeDisc disc = cascade_disc(map, cascade, r.p, r.n, r.axes);
+  float spread_m = map.filter_radius_m / (view.z_far_m * length(depth_per_m(cascade)));  // over the whole depth
   float search_m = max(smoothing_m, spread_m * (1.0 - disc.receiver.z));
   uint mates = facing_mates(r, depth_per_m(cascade));
   Search found = Search(search_m > smoothing_m, Blockers(0u, 0.0, 0u));
@@ -113,6 +113,6 @@ float cascade_pcss(ShadowView cascade, float light_radius_m, Receiver r) {
 }
 
 float pcss_visibility(ShadowMap map, Receiver r) {
-  if (map.is_directional != 0u) return cascade_pcss(views[cascade_at(map, r.p)], map.filter_radius_m, r);
+  if (map.is_directional != 0u) return cascade_pcss(map, views[cascade_at(map, r.p)], r);
   return cube_pcss(map, r);
 }

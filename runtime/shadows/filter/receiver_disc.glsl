@@ -3,7 +3,7 @@
 #ifndef CHANDELIER_RECEIVER_DISC_GLSL
 #define CHANDELIER_RECEIVER_DISC_GLSL
 #include "shadows/filter/block.glsl"
-#include "shadows/filter/shadow_lookup.glsl"
+#include "shadows/filter/texels.glsl"
 
 const float SMOOTHING_TEXELS = 1.5;  // least radius: hides the staircase of a single light's map
 const float RAISE_TEXELS = 1.5;      // bilinear comparison reads texels whose centres are up to a diagonal away
@@ -50,13 +50,27 @@ uint facing_mates(Receiver r, vec3 to_light) {
   return r.mates & (faces ? facing : ~facing);
 }
 
+// Up to two other surfaces beside the receiver. It lies on the light's side of their planes, so that they cannot shadow it.
+struct Beside {
+  vec3 first, second;  // planes as in texels.glsl; of a cube: the depth on the way to `at` is dot(plane, at) / largest(abs(at))
+  float margin;        // by how much more depth than that they may show
+};
+const uint MOST_BESIDE = 2u;
+const Beside NOTHING_BESIDE = Beside(vec3(0.0), vec3(0.0), 0.0);
+
+// The most depth that they have on the way to `at`.
+float depth_beside(Beside beside, vec3 at) { return max(dot(beside.first, at), dot(beside.second, at)); }
+
 // A receiver's plane as the centre of a cube sees it.
 struct CubeDisc {
-  vec3 receiver;  // from the centre, metres; off its surface
+  vec3 surface;   // the receiver from the centre, metres
+  vec3 receiver;  // the same, off its surface
   mat2x3 axes;    // unit vectors in the plane
   vec2 slope;     // how much farther away the plane is a metre along each axis, relative to the receiver's distance
   float cube;
   float near_m;
+  bool lone;  // one light shines from there: what it does not reach is not lit by another that shares the map
+  Beside beside;
 };
 
 // For taps up to radius_m from the receiver: they may fall on other faces than p does, at other slopes, which is why the
@@ -65,8 +79,8 @@ CubeDisc cube_disc(ShadowMap map, vec3 p, vec3 n, mat2x3 axes, float radius_m) {
   vec3 d = from_center(map, p);
   float raise_m = RAISE_TEXELS * 2.0 / view.face_size_px * (largest(abs(d)) + radius_m);
   float across = along_major_axis(d, n, raise_m + 1.4142136 * radius_m);
-  d += n * (raise_m * sqrt(max(0.0, 1.0 - across * across)));
-  return CubeDisc(d, axes, d * axes / dot(d, d), float(map.cube), map.near_m);
+  vec3 off = d + n * (raise_m * sqrt(max(0.0, 1.0 - across * across)));
+  return CubeDisc(d, off, axes, off * axes / dot(off, off), float(map.cube), map.near_m, map.light_count == 1u, NOTHING_BESIDE);
 }
 
 // A tap of the disc: where the plane lies there and its depth.
@@ -79,27 +93,36 @@ struct Tap {
 
 Tap cube_tap(CubeDisc disc, vec2 at_m) {
   vec3 at = disc.receiver + disc.axes * at_m;
-  float depth = disc.near_m / (largest(abs(at)) * (1.0 - DEPTH_ROUNDING));
-  return Tap(at, depth, depth * max(1.0, 1.0 + dot(disc.slope, at_m)));
+  float along = largest(abs(at));
+  float depth = disc.near_m / (along * (1.0 - DEPTH_ROUNDING));
+  float beside = depth_beside(disc.beside, at) / along + disc.beside.margin;
+  return Tap(at, depth, max(depth * max(1.0, 1.0 + dot(disc.slope, at_m)), beside));
 }
 
 // A receiver's plane in a cascade.
 struct CascadeDisc {
+  vec2 uv;  // where the receiver is
+  Spot spot;
   vec3 receiver;  // clip space; off its surface
   mat2x3 axes;    // a metre along each
   float layer;
+  float texel_m;
+  bool lone;
+  Beside beside;
 };
 
-CascadeDisc cascade_disc(ShadowView cascade, vec3 p, vec3 n, mat2x3 axes) {
-  mat4 clip_from_eye = mat4(cascade.clip_from_center[0], cascade.clip_from_center[1], cascade.clip_from_center[2],
-                            cascade.clip_from_center[3]);
-  vec3 receiver = vec3(clip_from_eye * vec4(p + n * (RAISE_TEXELS * cascade.texel_m), 1.0));
-  return CascadeDisc(receiver, mat3(clip_from_eye) * axes, float(cascade.layer));
+CascadeDisc cascade_disc(ShadowMap map, ShadowView cascade, vec3 p, vec3 n, mat2x3 axes) {
+  vec3 surface = to_cascade(cascade, vec4(p, 1.0));
+  vec3 receiver = surface + to_cascade(cascade, vec4(n * (RAISE_TEXELS * cascade.texel_m), 0.0));
+  mat2x3 clip_axes = mat2x3(to_cascade(cascade, vec4(axes[0], 0.0)), to_cascade(cascade, vec4(axes[1], 0.0)));
+  return CascadeDisc(surface.xy, cascade_spot(cascade, surface, n), receiver, clip_axes, float(cascade.layer),
+                     cascade.texel_m, map.light_count == 1u, NOTHING_BESIDE);
 }
 
 Tap cascade_tap(CascadeDisc disc, vec2 at_m) {
   vec3 clip = disc.receiver + disc.axes * at_m;
-  return Tap(vec3(clip.xy * 0.5 + 0.5, disc.layer), clip.z, max(clip.z, disc.receiver.z) + CASCADE_ROUNDING);
+  float beside = depth_beside(disc.beside, vec3(clip.xy, 1.0)) + disc.beside.margin;
+  return Tap(vec3(clip.xy * 0.5 + 0.5, disc.layer), clip.z, max(max(clip.z, disc.receiver.z), beside) + CASCADE_ROUNDING);
 }
 
 #endif

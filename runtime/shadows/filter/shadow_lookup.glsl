@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One hard comparison against a shadow map. Expects in scope: `ShadowView views[]`, `ViewConstants view`,
-// `samplerCubeArrayShadow cubes` and `sampler2DArrayShadow layers` (the same depths; a comparison passes where the
-// reference is greater or equal: depth is reversed). Points come as positions from the camera's eye, along the world's axes:
+// What all filters need. Expects in scope: `ShadowView views[]` and `ViewConstants view`; the soft filters also
+// `samplerCubeArrayShadow cubes` and `sampler2DArrayShadow layers`, where a comparison passes if the reference is greater or
+// equal: depth is reversed. Points come as positions from the camera's eye, along the world's axes:
 // what is seen is exact there, however far from the world's origin.
 #ifndef CHANDELIER_SHADOW_LOOKUP_GLSL
 #define CHANDELIER_SHADOW_LOOKUP_GLSL
@@ -27,20 +27,6 @@ float texel_size(ShadowMap map, vec3 p) {
   return 2.0 / view.face_size_px * largest(abs(from_center(map, p)));
 }
 
-// Moves a point off its surface so far that its own plane, sampled `texels` away, cannot shadow it. A plane's depth changes
-// within a face by at most texels * texel_size * tan(slope against the face), which this displacement along n makes up for.
-vec3 offset_from_surface(ShadowMap map, vec3 p, vec3 n, float texels) {
-  float reach = texels * texel_size(map, p);
-  float across = along_major_axis(from_center(map, p), n, reach);
-  return p + n * (reach * sqrt(max(0.0, 1.0 - across * across)));
-}
-
-// Is p lit, seen from the centre of a cube?
-float cube_lit(ShadowMap map, vec3 p) {
-  vec3 d = from_center(map, p);
-  return texture(cubes, vec4(d, float(map.cube)), map.near_m / (largest(abs(d)) * (1.0 - DEPTH_ROUNDING)));
-}
-
 // The first cascade that reaches as far as p.
 uint cascade_at(ShadowMap map, vec3 p) {
   float depth = dot(p, view.forward_ws);
@@ -56,13 +42,6 @@ const float CASCADE_ROUNDING = 2e-6;
 // How much a cascade's depth grows a metre farther on along each axis: it points towards the light.
 vec3 depth_per_m(ShadowView cascade) {
   return vec3(cascade.clip_from_center[0].z, cascade.clip_from_center[1].z, cascade.clip_from_center[2].z);
-}
-
-// Is p lit in this cascade? Its centre is the eye.
-float cascade_lit(ShadowView cascade, vec3 p) {
-  vec4 clip = mat4(cascade.clip_from_center[0], cascade.clip_from_center[1], cascade.clip_from_center[2],
-                   cascade.clip_from_center[3]) * vec4(p, 1.0);
-  return texture(layers, vec4(clip.xy * 0.5 + 0.5, float(cascade.layer), clip.z + CASCADE_ROUNDING));
 }
 
 #endif
