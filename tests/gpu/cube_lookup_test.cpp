@@ -178,10 +178,9 @@ class CubeLookupTest : public GpuTest {
     const gpu::Buffer out =
         gpu::make_buffer(device(), questions.size() * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::readback);
     gpu::run_once(device(), [&](VkCommandBuffer cmd) {
-      gpu::bind(
-          cmd, pipeline,
-          {gpu::storage(view), gpu::storage(map_buffer), gpu::storage(views), gpu::storage(asked), gpu::storage(out),
-           gpu::sampled(maps.store.depth.view, nearest)});
+      gpu::bind(cmd, pipeline,
+                {gpu::storage(view), gpu::storage(map_buffer), gpu::storage(views), gpu::storage(asked),
+                 gpu::storage(out), gpu::sampled(maps.store.depth.view, nearest)});
       gpu::dispatch(cmd, device(), questions.size(), 64);
       gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                           VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
