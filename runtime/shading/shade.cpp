@@ -47,17 +47,17 @@ void record_over_picture(VkCommandBuffer cmd, const gpu::Device& device, ShadePi
                          const Recipe& recipe, const ShadeInput& input, const CubeArray& store,
                          const Targets& targets) {
   const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, shader, recipe);
-  const VkSampler compare = recipe.filter == Filter::hard ? pipelines.nearest_compare : pipelines.linear_compare;
   // Every binding has to be something, read or not.
   const gpu::Buffer& tile_words = recipe.lookup == Lookup::tiles ? input.tiles.words : input.lights;
   const gpu::Buffer& visibility = recipe.deliver == Deliver::textures ? input.visibility : input.lights;
-  gpu::bind(cmd, pipeline,
-            {gpu::storage(input.view), gpu::storage(input.lights), gpu::storage(input.maps), gpu::storage(input.views),
-             gpu::sampled(targets.surface.view, pipelines.texel_sampler),
-             gpu::sampled(targets.depth.view, pipelines.texel_sampler), gpu::sampled(store.cubes, compare),
-             gpu::sampled(store.depth.view, compare), gpu::storage_image(targets.radiance), gpu::storage(tile_words),
-             gpu::storage(visibility), gpu::sampled(store.cubes, pipelines.nearest_depth),
-             gpu::sampled(store.depth.view, pipelines.nearest_depth)});
+  gpu::bind(
+      cmd, pipeline,
+      {gpu::storage(input.view), gpu::storage(input.lights), gpu::storage(input.maps), gpu::storage(input.views),
+       gpu::sampled(targets.surface.view, pipelines.texel_sampler),
+       gpu::sampled(targets.depth.view, pipelines.texel_sampler), gpu::sampled(store.cubes, pipelines.linear_compare),
+       gpu::sampled(store.depth.view, pipelines.linear_compare), gpu::storage_image(targets.radiance),
+       gpu::storage(tile_words), gpu::storage(visibility), gpu::sampled(store.cubes, pipelines.nearest_depth),
+       gpu::sampled(store.depth.view, pipelines.nearest_depth)});
   gpu::push_constants(cmd, pipeline,
                       frame::ShadeConstants{.first_light = input.first_light,
                                             .light_end = input.first_light + input.light_count,
@@ -71,7 +71,6 @@ void record_over_picture(VkCommandBuffer cmd, const gpu::Device& device, ShadePi
 ShadePipelines make_shade_pipelines(const gpu::Device& device) {
   ShadePipelines pipelines;
   pipelines.texel_sampler = make_texel_sampler(device);
-  pipelines.nearest_compare = shadow_sampler(device, VK_FILTER_NEAREST, VK_TRUE);
   pipelines.linear_compare = shadow_sampler(device, VK_FILTER_LINEAR, VK_TRUE);
   pipelines.nearest_depth = shadow_sampler(device, VK_FILTER_NEAREST, VK_FALSE);
   return pipelines;

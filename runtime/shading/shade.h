@@ -17,9 +17,8 @@ namespace chandelier {
 struct ShadePipelines {
   std::map<std::array<uint32_t, 5>, gpu::Pipeline> made;  // by shader and the answers it is specialized for
   gpu::Owned<VkSampler> texel_sampler;                    // for targets
-  gpu::Owned<VkSampler> nearest_compare;                  // filter hard
-  gpu::Owned<VkSampler> linear_compare;                   // other filters
-  gpu::Owned<VkSampler> nearest_depth;                    // filter pcss, its search for blockers
+  gpu::Owned<VkSampler> linear_compare;                   // of depths: filters pcf and pcss
+  gpu::Owned<VkSampler> nearest_depth;                    // depths as they are, for all filters
 };
 ShadePipelines make_shade_pipelines(const gpu::Device& device);
 

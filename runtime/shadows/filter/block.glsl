@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the pixels of a block, four by two whose threads follow each other (shading/strips.glsl), tell each other: each
-// reads a few texels of a shadow map, and each reads others. To be called by all threads of a subgroup that shade, at once.
+// reads a few texels of a shadow map, and each reads others. To be called by all threads of a subgroup that shade, at once. Who
+// asks others takes a ballot first: only those that are there just then have an answer.
 #ifndef CHANDELIER_BLOCK_GLSL
 #define CHANDELIER_BLOCK_GLSL
 

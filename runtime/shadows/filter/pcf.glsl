@@ -113,6 +113,7 @@ Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m, uint taps) {
 // The lit part of a disc, from this pixel's taps and from those of its block's that lie nearer than half the radius. Theirs
 // are put right by how much changes on the way.
 float lit_of_block(vec3 p, uint mates, Lit own, float radius_m) {
+  mates &= block_ballot(true);
   float weights = 1.0;
   float part = own.part;
   vec3 slope = own.slope;

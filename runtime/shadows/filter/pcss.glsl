@@ -45,6 +45,7 @@ Blockers cascade_blockers(CascadeDisc disc, float search_m) {
 // This pixel's blockers and those of its block's that searched nearly the same disc.
 Blockers blockers_of_block(vec3 p, uint mates, Blockers own, float search_m) {
   Blockers found = own;
+  mates &= block_ballot(true);
   for (uint i = 1u; i < BLOCK_PIXELS; ++i) {
     vec3 way = subgroupShuffleXor(p, i) - p;
     uint its_count = subgroupShuffleXor(own.count, i);

@@ -47,7 +47,7 @@ Receiver receiver_at(vec3 p, vec3 n) { return Receiver(p, n, receiver_axes(n), b
 uint facing_mates(Receiver r, vec3 to_light) {
   bool faces = dot(r.n, to_light) > 0.0;
   uint facing = block_ballot(faces);
-  return r.mates & (faces ? facing : ~facing);
+  return r.mates & block_ballot(true) & (faces ? facing : ~facing);
 }
 
 // Up to two other surfaces beside the receiver. It lies on the light's side of their planes, so that they cannot shadow it.

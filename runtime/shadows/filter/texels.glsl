@@ -37,8 +37,9 @@ vec3 plane_through(Texels t) {
 struct Spot {
   vec3 plane;
   float depth;
-  float texel;  // a texel's width, as a difference of depth
-  bool faces;   // the surface faces the map's centre
+  float texel;     // a texel's width, as a difference of depth
+  float rounding;  // of depth on its way into the map and out of it
+  bool faces;      // the surface faces the map's centre
 };
 
 // What lies within so many texels of a spot's plane is its own surface.
@@ -56,10 +57,9 @@ struct Sight {
 Sight sight(Texels t, Spot spot) {
   vec4 plane = plane_at(spot.plane, t.middle);
   float step = 2.0 / view.face_size_px * (abs(spot.plane.x) + abs(spot.plane.y)) + spot.texel;
-  float rounding = DEPTH_ROUNDING * spot.depth;
-  float error = OWN_TEXELS * step + rounding;
+  float error = OWN_TEXELS * step + spot.rounding;
   bvec4 own = lessThanEqual(abs(t.depth - plane), vec4(spot.faces ? error : -1.0));
-  bvec4 before = greaterThan(t.depth, max(plane + (spot.faces ? error : -error), vec4(spot.depth + rounding)));
+  bvec4 before = greaterThan(t.depth, max(plane + (spot.faces ? error : -error), vec4(spot.depth + spot.rounding)));
   bvec4 near = lessThanEqual(t.depth, vec4(spot.depth + TOUCH_TEXELS * spot.texel));
   return Sight(own, before, bvec4(uvec4(before) & uvec4(near)));
 }
@@ -113,7 +113,8 @@ Spot cube_spot(float near_m, vec3 d, vec3 n, vec3 at) {
   float depth = near_m / largest(abs(d));
   vec3 tilted = n - d * (1e-4 / largest(abs(d)));
   float facing = dot(tilted, d);
-  return Spot(to_face(at, tilted) * (near_m / facing), depth, 2.0 / view.face_size_px * depth, facing < 0.0);
+  return Spot(to_face(at, tilted) * (near_m / facing), depth, 2.0 / view.face_size_px * depth, DEPTH_ROUNDING * depth,
+              facing < 0.0);
 }
 
 // A cascade's centre is the eye.
@@ -121,6 +122,9 @@ vec3 to_cascade(ShadowView cascade, vec4 p) {
   return vec3(mat4(cascade.clip_from_center[0], cascade.clip_from_center[1], cascade.clip_from_center[2],
                    cascade.clip_from_center[3]) * p);
 }
+
+// The g-buffer's normals are rounded, which turns planes that the sun shines along.
+const float NORMAL_TEXELS = 0.02;
 
 // The surface across n through what is `clip` in a cascade. The cascade's axes are at right angles, and its depth falls along
 // the light's way.
@@ -130,7 +134,9 @@ Spot cascade_spot(ShadowView cascade, vec3 clip, vec3 n) {
   float depth2 = dot(rows[2], rows[2]);
   float facing = dot(rows[2], n) + 1e-4 * sqrt(depth2);
   vec2 slope = -vec2(dot(rows[0], n) / dot(rows[0], rows[0]), dot(rows[1], n) / dot(rows[1], rows[1])) * (depth2 / facing);
-  return Spot(vec3(slope, clip.z - dot(slope, clip.xy)), clip.z, cascade.texel_m * sqrt(depth2), facing > 0.0);
+  float texel = cascade.texel_m * sqrt(depth2);
+  float rounding = CASCADE_ROUNDING + NORMAL_TEXELS * texel;
+  return Spot(vec3(slope, clip.z - dot(slope, clip.xy)), clip.z, texel, rounding, facing > 0.0);
 }
 
 #endif
