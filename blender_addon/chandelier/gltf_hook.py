@@ -4,6 +4,8 @@
 The exporter swallows what is raised here and says that it has finished, so that export.py checks the written file.
 It has no hook for lights; all nodes with the same light share one dict, which is filled again for each of them."""
 
+import bpy
+
 from . import scene_lights, shadows
 from .core import photometry
 
@@ -13,11 +15,13 @@ EXTENSION = "KHR_lights_punctual"
 class glTF2ExportUserExtension:
     """Found by this name in the add-on's module."""
 
+    def __init__(self):
+        self.objects = {}  # Blender's, of each node that has one
+
     def gather_node_hook(self, node, blender_object, export_settings):
-        if blender_object is None:
-            return
-        if not blender_object.visible_shadow:
-            write_no_shadow(node, blender_object.is_instancer)
+        if not isinstance(blender_object, bpy.types.Object):
+            return  # none, or a collection
+        self.objects[node] = blender_object
         if blender_object.type == "LIGHT" and EXTENSION in (node.extensions or {}):
             light = node.extensions[EXTENSION].extension["light"].extension
             write_light(light, blender_object.data, export_settings["gltf_lighting_mode"] == "SPEC")
@@ -27,24 +31,34 @@ class glTF2ExportUserExtension:
             material.extras = without_shadow(material.extras)
 
     def gather_scene_hook(self, scene, blender_scene, export_settings):
-        """With custom properties exported, our own come along as Blender stores them, which nobody reads."""
+        """Once all nodes are there. With custom properties exported, our own come along as Blender stores them, which nobody reads."""
+        for node in scene.nodes:
+            self.write_no_shadow(node, None)
         if isinstance(scene.extras, dict):
             for name in ("chandelier", "chandelier_overlay"):
                 scene.extras.pop(name, None)
             scene.extras = scene.extras or None
 
+    def write_no_shadow(self, node, instancer):
+        """On a node and what is below it; `instancer`: the outermost object that instances it, or None."""
+        thing = self.objects.get(node)
+        if node.mesh is not None and not shadows.throws(thing, instancer):
+            node.extras = without_shadow(node.extras)
+        for child in node.children or ():
+            self.write_no_shadow(child, instancer or (thing if instances(thing, self.objects.get(child)) else None))
+
+
+def instances(thing, child):
+    """Whether `thing` instances what the exporter hangs below it, beside which a collection's instancer may have children of its
+    own. Those of other instancers are what is instanced."""
+    if thing is None or not thing.is_instancer:
+        return False
+    return thing.instance_type != "COLLECTION" or child is None or child.parent != thing
+
 
 def without_shadow(extras):
     """schemas/shadow_extras.schema.json"""
     return {**(extras or {}), "chandelier": {"shadow": False}}
-
-
-def write_no_shadow(node, instances):
-    """On a node's mesh; `instances`: and on those of its children, which then are what it instances."""
-    if node.mesh is not None:
-        node.extras = without_shadow(node.extras)
-    for child in (node.children or ()) if instances else ():
-        write_no_shadow(child, instances)
 
 
 def write_light(light, data, is_spec):

@@ -12,9 +12,20 @@ def material_throws(material):
     return getattr(material, "shadow_method", "OPAQUE") != "NONE"
 
 
+def throws(thing, instancer):
+    """`instancer`: the outermost that instances the object, which can switch off its shadow, as in Cycles. None says nothing."""
+    return all(owner.visible_shadow for owner in (thing, instancer) if owner is not None)
+
+
 def placement_throws(instance):
-    """Of one of the depsgraph's instances. As in Cycles, whoever instances an object can switch off its shadow."""
-    return instance.object.original.visible_shadow and (not instance.is_instance or instance.parent.original.visible_shadow)
+    """Of one of the depsgraph's instances, whose parent is the outermost too."""
+    return throws(instance.object.original, instance.parent.original if instance.is_instance else None)
+
+
+def constant(shader, *names):
+    """Value of the input that has one of these names; None where it has none or something is linked to it."""
+    socket = next((shader.inputs[name] for name in names if name in shader.inputs), None)
+    return None if socket is None or socket.is_linked else socket.default_value
 
 
 def is_glass(material):
@@ -23,9 +34,9 @@ def is_glass(material):
     shader = next((node for node in nodes if node.type == "BSDF_PRINCIPLED"), None)
     if shader is None:
         return False
-    sockets = [shader.inputs.get(name) for name in ("Transmission", "Transmission Weight", "Metallic")]  # the second from 4.0 on
-    *transmission, metallic = [socket.default_value for socket in sockets if socket and not socket.is_linked]
-    return len(transmission) == 1 and transmission[0] * (1 - metallic) >= GLASS
+    transmission = constant(shader, "Transmission", "Transmission Weight")  # the second from 4.0 on
+    metallic = constant(shader, "Metallic")
+    return None not in (transmission, metallic) and transmission * (1 - metallic) >= GLASS
 
 
 def is_see_through(material):

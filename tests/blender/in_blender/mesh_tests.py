@@ -101,6 +101,51 @@ class NoShadow(MeshCase):
         self.assertEqual(self.shadowless(), ["Foot"])
         self.assertEqual(len([node for node in self.gltf()["nodes"] if node["name"] == "Foot"]), 2)
 
+    def test_a_child_of_what_instances_a_collection_keeps_its_own(self):
+        """It is not instanced. 3.4 leaves it out."""
+        collection = bpy.data.collections.new("Lamp")
+        self.cube("Foot", collection=collection)
+        instancer = self.add_instance(collection)
+        instancer.visible_shadow = False
+        child = self.cube("Child", location=(3, 0, 0))
+        child.parent = instancer
+        self.cube("Grandchild", location=(3, 0, 3)).parent = child
+        self.export()
+        self.assertEqual(self.shadowless(), ["Foot"])
+        if bpy.app.version >= (4, 0):
+            self.assertLessEqual({"Child", "Grandchild"}, {node["name"] for node in self.gltf()["nodes"]})
+
+    def test_children_that_are_instanced_on_vertices_do_not(self):
+        instancer, child = self.cube("Instancer"), self.cube("Child", size=0.1)
+        child.parent, instancer.instance_type, instancer.visible_shadow = instancer, "VERTS", False
+        instancer.show_instancer_for_render = False
+        self.export()
+        self.assertEqual(self.shadowless(), 8 * ["Child"])
+
+    def test_of_nested_instances_the_outermost_counts(self):
+        """As in Cycles."""
+        inner, outer = bpy.data.collections.new("Inner"), bpy.data.collections.new("Outer")
+        self.cube("Bulb", collection=inner)
+        middle = self.add_instance(inner)
+        self.scene.collection.objects.unlink(middle)
+        outer.objects.link(middle)
+        placed = self.add_instance(outer)
+        for of_middle, of_placed, expected in ((False, True, []), (True, False, ["Bulb"]), (False, False, ["Bulb"])):
+            middle.visible_shadow, placed.visible_shadow = of_middle, of_placed
+            self.export()
+            self.assertEqual(self.shadowless(), expected)
+
+    def test_collections_that_are_nodes_are_in_nobodys_way(self):
+        option = "export_hierarchy_full_collections"
+        if option not in bpy.ops.export_scene.gltf.get_rna_type().properties:
+            self.skipTest("the exporter makes no nodes of collections here")
+        collection = bpy.data.collections.new("Lamp")
+        self.scene.collection.children.link(collection)
+        self.cube("Bulb", collection=collection).visible_shadow = False
+        bpy.ops.export_scene.gltf(filepath=str(self.path), **{option: True})
+        self.assertIn("Lamp", [node["name"] for node in self.gltf()["nodes"]])
+        self.assertEqual(self.shadowless(), ["Bulb"])
+
     def test_a_linked_library_and_an_override(self):
         bulb, foot = self.cube("Bulb"), self.cube("Foot", location=(0, 0, -2))
         bulb.visible_shadow = False
@@ -134,6 +179,26 @@ class NoShadow(MeshCase):
         bulb.data.materials.append(self.material("Glass", **({"shadow_method": "NONE"} if HAS_SHADOW_MODE else {})))
         self.export()
         self.assert_valid()
+
+
+class Glass(MeshCase):
+    def test_linked_sockets_say_nothing_of_it(self):
+        """A bulb around a lamp is glass by its material's values alone; where one of them is linked, it is a surprise."""
+        material = self.material("Glass")
+        self.cube("Bulb", size=0.2).data.materials.append(material)
+        self.lamp()
+        links, inputs = material.node_tree.links, material.node_tree.nodes["Principled BSDF"].inputs
+        metallic, transmission = inputs["Metallic"], inputs["Transmission" if "Transmission" in inputs else "Transmission Weight"]
+        transmission.default_value = 1
+        value = material.node_tree.nodes.new("ShaderNodeValue").outputs[0]
+        for linked in ([], [transmission], [metallic], [transmission, metallic]):
+            made = [links.new(value, socket) for socket in linked]
+            self.assertEqual(part("shadows").is_glass(material), not linked)
+            self.assertEqual(bpy.ops.chandelier.find_surprises(), {"FINISHED"})
+            found = [item.name for item in bpy.context.window_manager.chandelier.surprises if item.rule == "inside"]
+            self.assertEqual(found, ["Lamp"] if linked else [])
+            for link in made:
+                links.remove(link)
 
 
 class ShapeKeys(MeshCase):
