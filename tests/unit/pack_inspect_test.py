@@ -30,7 +30,7 @@ class PackInspect(unittest.TestCase):
         self.assertEqual(report["bounds_min_ws"], [-2, 0, -0.5])
         self.assertEqual(report["sections"][2], {"kind": 3, "name": "positions", "count": 7, "stride_bytes": 12,
                                                  "size_bytes": 84, "stored_bytes": 84, "codec": "raw"})
-        self.assertEqual(report["triangles"], {"stored": 3, "drawn": 5})
+        self.assertEqual(report["triangles"], {"stored": 3, "drawn": 5, "shadowless": 4})
         self.assertEqual(report["batches"], {"count": 3, "drawn": 5, "closed": 0, "triangles": {"min": 1, "mean": 1, "max": 1}})
         self.assertEqual([m["name"] for m in report["materials"]], ["stone", "Blätter"])
         self.assertEqual(report["images"][0], {"name": "bricks.png", "width": 4, "height": 2, "level_count": 3,
@@ -66,7 +66,7 @@ class PackInspect(unittest.TestCase):
     def test_light_table(self):
         lines = inspect(self.path, "--lights").stdout.splitlines()
         torch = next(line for line in lines if "torch" in line)
-        self.assertEqual(torch.split(), ["spot", "1,", "0.5,", "-0.125", "12.5", "cd", "15.8", "m", "derived", "torch"])
+        self.assertEqual(torch.split(), ["spot", "1000001.00,", "0.40,", "250000.38", "12.5", "cd", "15.8", "m", "derived", "torch"])
         sun = next(line for line in lines if "sun" in line)
         self.assertEqual(sun.split(), ["directional", "to", "0,", "0,", "-1", "1000", "lx", "no", "end", "sun"])
 
