@@ -138,7 +138,7 @@ DecodedTexels decode_image(const EncodedImage& image) {
   const std::size_t texels = std::size_t(decoded.width) * std::size_t(decoded.height);
   return {{static_cast<std::uint32_t>(decoded.width), static_cast<std::uint32_t>(decoded.height),
            to_rgba(std::move(decoded.values), texels, static_cast<std::size_t>(decoded.channels))},
-          shortened(damage, 200)};
+          printable(shortened(damage, 200))};  // it may hold bytes of the file
 }
 
 const std::string& decoder_code() {

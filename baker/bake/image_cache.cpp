@@ -101,7 +101,8 @@ void store_images(Cache& cache, const std::string& name, const MadeImages& made)
     images.push_back({{"texels", image.texels}, {"squared_error", image.squared_error}, {"values", image.values}});
   }
   const Json notes = {{"of_request", made.of_request}, {"images", images}, {"damage", made.damage}};
-  cache.store(name, pack::view_of(contents), notes.dump());
+  const std::string text = notes.dump(-1, ' ', false, Json::error_handler_t::replace);  // throws at no text
+  cache.store(name, pack::view_of(contents), text);
 }
 
 }  // namespace chandelier::baker

@@ -187,6 +187,25 @@ TEST(Damaged, ImagesAreNamedInAWarningOrWhereThatIsStrictInAnError) {
       << error;
 }
 
+TEST(Damaged, ChunksWhoseNameIsNoTextAreNamedWithACacheToo) {
+  const EncodedImage odd = with_chunk(noisy_png(), chunk("\xF4"
+                                                         "EXt",
+                                                         {'a', 0, 'b'}, false));
+  EXPECT_NE(decode_image(odd).damage.find("the checksum of chunk \\xf4EXt at byte"), std::string::npos);
+  const GltfBuilder gltf = showing(odd.bytes, "image/png");
+  Cache cache(scratch_folder() / "odd_chunk_cache");
+  std::vector<std::string> first;
+  for (int run = 0; run < 2; ++run) {  // made, and found
+    Report report;
+    Warnings warnings;
+    bake(gltf.import(), {}, Progress(false), report, warnings, &cache);
+    ASSERT_EQ(warnings.lines().size(), 1u);
+    EXPECT_NE(warnings.lines()[0].find("chunk \\xf4EXt at byte"), std::string::npos) << warnings.lines()[0];
+    if (run == 0) first = warnings.lines();
+    EXPECT_EQ(warnings.lines(), first);
+  }
+}
+
 TEST(Damaged, MapsThatOnlyTellGlassAreNamedToo) {
   EncodedImage cut = noisy_jpeg();
   cut.bytes.resize(cut.bytes.size() - 2);
