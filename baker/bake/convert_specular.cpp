@@ -61,8 +61,9 @@ MetallicTexels convert_texels(const SpecularGlossiness& factors, const Texels* d
     return std::max(diffuse ? diffuse->*side : 1, glossy ? glossy->*side : 1);
   };
   const std::uint32_t width = larger(&Texels::width), height = larger(&Texels::height);
-  const std::vector<std::uint8_t> empty(std::size_t{4} * width * height, 255);
-  MetallicTexels out{{width, height, empty}, {width, height, empty}};
+  const std::size_t bytes = std::size_t{4} * width * height;
+  MetallicTexels out{{width, height, std::vector<std::uint8_t>(bytes, 255)},
+                     {width, height, std::vector<std::uint8_t>(bytes, 255)}};
   const Sampled by_diffuse{diffuse, width, height}, by_glossy{glossy, width, height};
   tbb::parallel_for(std::uint32_t{0}, height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < width; ++x) {

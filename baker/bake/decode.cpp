@@ -97,9 +97,8 @@ DecodedImage decode_webp(const EncodedImage& image) {
   return decoded;
 }
 
-/// A damaged file with less than a byte for 2048 texels, which no format comes near, claims a size and has no picture.
 void refuse_empty(const EncodedImage& image, const std::string& damage) {
-  if (!damage.empty() && claimed_texels(image) / 2048 > image.bytes.size()) fail(image.where, damage);
+  if (!damage.empty() && has_no_picture(claimed_size(image), image.bytes.size())) fail(image.where, damage);
 }
 
 /// With what is wrong with the file as a whole in `damage`.
@@ -149,9 +148,9 @@ const std::string& decoder_code() {
   return code;
 }
 
-std::uint64_t claimed_texels(const EncodedImage& image) {
-  if (is_png(image)) return png_texels(image.bytes);
-  return is_jpeg(image) ? jpeg_texels(image.bytes) : is_webp(image) ? webp_texels(image.bytes) : 0;
+ClaimedSize claimed_size(const EncodedImage& image) {
+  if (is_png(image)) return png_size(image.bytes);
+  return is_jpeg(image) ? jpeg_size(image.bytes) : is_webp(image) ? webp_size(image.bytes) : ClaimedSize();
 }
 
 }  // namespace chandelier::baker

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "../scene.h"
+#include "claimed_size.h"
 #include "mips.h"
 
 namespace chandelier::baker {
@@ -25,7 +26,7 @@ DecodedTexels decode_image(const EncodedImage& image);
 /// What decodes, as it lies on the disk: equal ones decode alike. Empty where it is missing.
 const std::string& decoder_code();
 
-/// Width times height as the header claims, unchecked; 0 where there is none.
-std::uint64_t claimed_texels(const EncodedImage& image);
+/// Of a file of any of the three formats.
+ClaimedSize claimed_size(const EncodedImage& image);
 
 }  // namespace chandelier::baker

@@ -2,12 +2,45 @@
 // Decodes what an image of the scene is made of, and converts it.
 #include "decode_scene.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "convert_specular.h"
 #include "decode.h"
 
 namespace chandelier::baker {
+namespace {
+
+/// The width and height of an image that is converted from others are the larger ones of theirs.
+void refuse_odd_pair(const EncodedImage& image, const std::vector<Texels>& sources) {
+  constexpr std::uint64_t kMostGrowth = 4, kFreeTexels = std::uint64_t{1} << 24;
+  std::uint64_t width = 0, height = 0, largest = 0;
+  for (const Texels& source : sources) {
+    width = std::max<std::uint64_t>(width, source.width);
+    height = std::max<std::uint64_t>(height, source.height);
+    largest = std::max(largest, std::uint64_t{source.width} * source.height);
+  }
+  if (width * height <= std::max(kFreeTexels, kMostGrowth * largest)) return;
+  const auto size = [](const Texels& of) { return std::to_string(of.width) + "x" + std::to_string(of.height); };
+  fail(image.where,
+       "its shape and that of the specularGlossinessTexture it is used with differ too much to make one image of both "
+       "(" +
+           size(sources.front()) + " and " + size(sources.back()) + ")");
+}
+
+}  // namespace
+
+std::uint64_t claimed_texels(const Scene& scene, std::uint32_t image) {
+  std::uint64_t texels = 0;
+  ClaimedSize converted;
+  for_each_source(scene, image, [&](std::uint32_t source) {
+    const ClaimedSize size = claimed_size(scene.images[source]);
+    texels += size.texels();
+    converted = {std::max(converted.width, size.width), std::max(converted.height, size.height)};
+  });
+  if (!scene.images[image].converted_from) return texels;
+  return texels + 2 * converted.texels();  // two images are made of it
+}
 
 SceneTexels decode_image(const Scene& scene, std::uint32_t image) {
   SceneTexels out;
@@ -24,6 +57,7 @@ SceneTexels decode_image(const Scene& scene, std::uint32_t image) {
   }
   const Texels* diffuse = from->diffuse == kNone ? nullptr : &sources.front();
   const Texels* glossy = from->specular_glossiness == kNone ? nullptr : &sources.back();
+  refuse_odd_pair(scene.images[image], sources);
   MetallicTexels converted = convert_texels(*from, diffuse, glossy);
   out.color = std::move(converted.base_color);
   out.data = std::move(converted.metallic_roughness);

@@ -21,6 +21,9 @@ void for_each_source(const Scene& scene, std::uint32_t image, Visit visit) {
   }
 }
 
+/// Texels that decoding an image has in memory at a time, as the headers of its sources claim.
+std::uint64_t claimed_texels(const Scene& scene, std::uint32_t image);
+
 /// Texels as a colour and as anything else: two images only where they are converted.
 struct SceneTexels {
   Texels color;
@@ -33,7 +36,8 @@ struct SceneTexels {
   }
 };
 
-/// Throws Error where the image, or one that it is converted from, cannot be decoded.
+/// Throws Error where the image, or one that it is converted from, cannot be decoded, or where two of those have shapes
+/// so different that an image in the larger width and height would be far larger than both.
 SceneTexels decode_image(const Scene& scene, std::uint32_t image);
 
 /// Says what was damaged. Throws Error instead where that is `strict`.

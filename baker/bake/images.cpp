@@ -185,8 +185,7 @@ std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<Imag
     progress.next("making images, " + std::to_string(first) + " of " + std::to_string(jobs.size()) + " done");
     std::size_t end = first;
     for (std::uint64_t texels = 0; end < jobs.size() && (end == first || texels < kTexelsAtOnce); ++end) {
-      for_each_source(scene, jobs[end].image,
-                      [&](std::uint32_t source) { texels += claimed_texels(scene.images[source]); });
+      texels += claimed_texels(scene, jobs[end].image);
     }
     tbb::parallel_for(first, end,
                       [&](std::size_t i) { made[i] = find_or_make_images(jobs[i], scene, requests, settings, cache); });

@@ -48,10 +48,10 @@ bool is_whole_jpeg(const std::vector<std::uint8_t>& bytes) {
   return find_marker(bytes, [](std::uint8_t marker) { return marker == kEndOfImage; }) < bytes.size();
 }
 
-std::uint64_t jpeg_texels(const std::vector<std::uint8_t>& bytes) {
+ClaimedSize jpeg_size(const std::vector<std::uint8_t>& bytes) {
   const std::size_t at = find_marker(bytes, starts_frame);
-  if (bytes.size() - at < 9) return 0;
-  return std::uint64_t{u16_at(&bytes[at + 5])} * u16_at(&bytes[at + 7]);  // marker, length, precision, height, width
+  if (bytes.size() - at < 9) return {};
+  return {u16_at(&bytes[at + 7]), u16_at(&bytes[at + 5])};  // marker, length, precision, height, width
 }
 
 }  // namespace chandelier::baker

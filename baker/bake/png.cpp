@@ -246,8 +246,8 @@ void append(const Chunk& chunk, Bytes& out) {
 }
 
 /// The image data as it is, or made whole.
-void append_data(const Header& header, const std::vector<Chunk>& data, const std::string& where, std::string& damage,
-                 Bytes& out) {
+void append_data(const Header& header, const std::vector<Chunk>& data, std::size_t file_bytes, const std::string& where,
+                 std::string& damage, Bytes& out) {
   const std::vector<std::size_t> sizes = row_sizes(header);
   const Rows rows = check_rows(sizes, data);
   const bool all = rows.good == sizes.size();
@@ -257,6 +257,7 @@ void append_data(const Header& header, const std::vector<Chunk>& data, const std
     return;
   }
   note(damage, rows.fault);
+  if (has_no_picture({header.width, header.height}, file_bytes)) fail(where, damage);  // before it takes gigabytes
   const Bytes mended = mended_rows(sizes, rows.good, data);
   constexpr std::size_t kMostInChunk = std::size_t{1} << 30;
   for (std::size_t at = 0; at < mended.size(); at += kMostInChunk) {
@@ -290,14 +291,14 @@ std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, 
   }
   if (header.color == kPalette && palette_colors == 0)
     damaged(where, "no palette before its data, colour type", kPalette);
-  append_data(header, data, where, damage, out);
+  append_data(header, data, bytes.size(), where, damage, out);
   append("IEND", nullptr, 0, out);
   return out;
 }
 
-std::uint64_t png_texels(const std::vector<std::uint8_t>& bytes) {
+ClaimedSize png_size(const std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kWidth = kSignatureBytes + 8, kHeight = kWidth + 4;  // IHDR is the first chunk
-  return bytes.size() < kHeight + 4 ? 0 : std::uint64_t{u32_at(&bytes[kWidth])} * u32_at(&bytes[kHeight]);
+  return bytes.size() < kHeight + 4 ? ClaimedSize() : ClaimedSize{u32_at(&bytes[kWidth]), u32_at(&bytes[kHeight])};
 }
 
 }  // namespace chandelier::baker

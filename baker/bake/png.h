@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "claimed_size.h"
+
 namespace chandelier::baker {
 
 /// The chunks of a PNG that its texels need: glTF ignores colour profiles and gamma, and the decoder would print
@@ -15,7 +17,7 @@ namespace chandelier::baker {
 std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where,
                                         std::string& damage);
 
-/// Width times height as its header claims, unchecked; 0 where there is no header.
-std::uint64_t png_texels(const std::vector<std::uint8_t>& bytes);
+/// As its header claims it.
+ClaimedSize png_size(const std::vector<std::uint8_t>& bytes);
 
 }  // namespace chandelier::baker

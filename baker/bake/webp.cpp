@@ -52,18 +52,18 @@ std::vector<std::uint8_t> webp_without_alpha(const std::vector<std::uint8_t>& by
   return out;
 }
 
-std::uint64_t webp_texels(const std::vector<std::uint8_t>& bytes) {
-  if (bytes.size() < kFileHeader + kChunkHeader + 10) return 0;
+ClaimedSize webp_size(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.size() < kFileHeader + kChunkHeader + 10) return {};
   const std::uint8_t *chunk = &bytes[kFileHeader], *data = chunk + kChunkHeader;
   if (is(chunk, "VP8X")) {  // 24 bits each, less one
-    return std::uint64_t{(u32_at(data + 4) & 0xFFFFFF) + 1} * ((u32_at(data + 6) >> 8) + 1);
+    return {(u32_at(data + 4) & 0xFFFFFF) + 1, (u32_at(data + 6) >> 8) + 1};
   }
   if (is(chunk, "VP8L")) {  // 14 bits each, less one
     const std::uint32_t bits = u32_at(data + 1);
-    return std::uint64_t{(bits & 0x3FFF) + 1} * ((bits >> 14 & 0x3FFF) + 1);
+    return {(bits & 0x3FFF) + 1, (bits >> 14 & 0x3FFF) + 1};
   }
-  if (!is(chunk, "VP8 ")) return 0;
-  return std::uint64_t{u32_at(data + 6) & 0x3FFF} * (u32_at(data + 6) >> 16 & 0x3FFF);  // after a tag and a start code
+  if (!is(chunk, "VP8 ")) return {};
+  return {u32_at(data + 6) & 0x3FFF, u32_at(data + 6) >> 16 & 0x3FFF};  // after a tag and a start code
 }
 
 }  // namespace chandelier::baker

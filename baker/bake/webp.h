@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "claimed_size.h"
+
 namespace chandelier::baker {
 
 /// A copy that does not say that it has alpha, so that it decodes to its colours alone.
 std::vector<std::uint8_t> webp_without_alpha(const std::vector<std::uint8_t>& bytes);
 
-/// Width times height as its first chunk claims, unchecked; 0 where there is none.
-std::uint64_t webp_texels(const std::vector<std::uint8_t>& bytes);
+/// As its first chunk claims it.
+ClaimedSize webp_size(const std::vector<std::uint8_t>& bytes);
 
 }  // namespace chandelier::baker

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/convert_specular.h"
+#include "bake/decode_scene.h"
 #include "encode_image.h"
 #include "gltf_builder.h"
 
@@ -203,6 +204,31 @@ TEST(SpecularGlossiness, OfTwoTexturesIsMadeOfBoth) {
   EXPECT_GT(texel_of(pack, rough, 63).b, 250);
   EXPECT_GT(texel_of(pack, base, 63).r, 250);
   EXPECT_LT(texel_of(pack, base, 63).g, 5);
+}
+
+/// A material of a diffuse image `long_side` wide and one high, and a mirror's image that stands on end.
+GltfBuilder crossed_images(int long_side) {
+  GltfBuilder gltf =
+      glossy_triangle({{"diffuseTexture", {{"index", 0}}}, {"specularGlossinessTexture", {{"index", 1}}}});
+  const Bytes pixels(static_cast<std::size_t>(3 * long_side), 200);
+  for (const EncodedImage& image : {encoded("png", long_side, 1, 3, pixels), encoded("png", 1, long_side, 3, pixels)}) {
+    const int number = gltf.append("images", {{"bufferView", gltf.add_view(image.bytes)}, {"mimeType", "image/png"}});
+    gltf.append("textures", {{"source", number}});
+  }
+  return gltf;
+}
+
+TEST(SpecularGlossiness, OfCrossedImagesTakesNoMoreMemoryThanIsCounted) {
+  const Scene scene = crossed_images(1024).import();
+  const std::uint32_t image = scene.textures.at(scene.materials.at(0).base_color.texture).image;
+  EXPECT_EQ(claimed_texels(scene, image), 2u * 1024 + 2u * 1024 * 1024);
+  EXPECT_EQ(decode_image(scene, image).color.rgba.size(), std::size_t{4} * 1024 * 1024);
+  const std::string error = error_of(crossed_images(16384).save("crossed"));  // two images of a gigabyte
+  EXPECT_NE(
+      error.find("image 0: its shape and that of the specularGlossinessTexture it is used with differ too much to "
+                 "make one image of both (16384x1 and 1x16384)"),
+      std::string::npos)
+      << error;
 }
 
 TEST(SpecularGlossiness, DecidesWithItsConvertedTexelsWhatIsGlass) {
