@@ -79,6 +79,7 @@ struct EncodedImage {
   std::vector<std::uint8_t> bytes;
   std::string file = {};  // the first part of `where`
   std::optional<SpecularGlossiness> converted_from = {};
+  bool damage_told = false;  // in a warning, which one is enough of
 };
 
 struct Texture {

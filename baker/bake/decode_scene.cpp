@@ -47,7 +47,7 @@ SceneTexels decode_image(const Scene& scene, std::uint32_t image) {
   std::vector<Texels> sources;
   for_each_source(scene, image, [&](std::uint32_t source) {
     DecodedTexels decoded = decode_image(scene.images[source]);
-    if (!decoded.damage.empty() && out.damage.empty()) out.damage = decoded.damage;
+    out.damage.push_back(std::move(decoded.damage));
     sources.push_back(std::move(decoded.texels));
   });
   const std::optional<SpecularGlossiness>& from = scene.images[image].converted_from;
@@ -64,12 +64,20 @@ SceneTexels decode_image(const Scene& scene, std::uint32_t image) {
   return out;
 }
 
-void tell_damage(const EncodedImage& image, const std::string& damage, bool strict, Warnings& warnings) {
-  if (damage.empty()) return;
-  if (strict) fail(image.where, damage + ", and --strict was asked for");
-  const bool split = !image.file.empty() && image.where.size() > image.file.size() + 2;
-  warnings.add(split ? image.file : "scene", split ? image.where.substr(image.file.size() + 2) : image.where,
-               damage + ": what could be decoded is baked; --strict refuses it");
+void tell_damage(Scene& scene, std::uint32_t image, const std::vector<std::string>& damage, bool strict,
+                 Warnings& warnings) {
+  std::size_t number = 0;
+  for_each_source(scene, image, [&](std::uint32_t source) {
+    const std::string& what = damage.at(number++);
+    EncodedImage& encoded = scene.images[source];
+    if (what.empty() || encoded.damage_told) return;
+    if (strict) fail(encoded.where, what + ", and --strict was asked for");
+    encoded.damage_told = true;
+    const bool split = !encoded.file.empty() && encoded.where.size() > encoded.file.size() + 2;
+    warnings.add(split ? encoded.file : "scene", "images",
+                 what + ": what could be decoded is baked; --strict refuses it",
+                 split ? encoded.where.substr(encoded.file.size() + 2) : encoded.where);
+  });
 }
 
 }  // namespace chandelier::baker

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "../error.h"
 #include "../scene.h"
@@ -28,7 +29,7 @@ std::uint64_t claimed_texels(const Scene& scene, std::uint32_t image);
 struct SceneTexels {
   Texels color;
   std::optional<Texels> data;
-  std::string damage;  // as DecodedTexels has it
+  std::vector<std::string> damage;  // of each source, in their order, as DecodedTexels has it
 
   const Texels& as(ImageUse use) const {
     const bool is_color = use == ImageUse::color || use == ImageUse::masked_color;
@@ -40,7 +41,9 @@ struct SceneTexels {
 /// so different that an image in the larger width and height would be far larger than both.
 SceneTexels decode_image(const Scene& scene, std::uint32_t image);
 
-/// Says what was damaged. Throws Error instead where that is `strict`.
-void tell_damage(const EncodedImage& image, const std::string& damage, bool strict, Warnings& warnings);
+/// Says which of an image's sources are damaged, once each, given what each has. Throws Error instead where that is
+/// `strict`.
+void tell_damage(Scene& scene, std::uint32_t image, const std::vector<std::string>& damage, bool strict,
+                 Warnings& warnings);
 
 }  // namespace chandelier::baker

@@ -33,8 +33,8 @@ class Channel {
     texels_ = decoded.as(ImageUse::data);
   }
 
-  /// What is wrong with the file; or nothing.
-  const std::string& damage() const { return damage_; }
+  /// What is wrong with the files that the texture is made of.
+  const std::vector<std::string>& damage() const { return damage_; }
 
   /// At the nearest texel: what is asked is the mean over a triangle.
   float at(const glm::vec2& uv0, const glm::vec2& uv1) const {
@@ -56,7 +56,7 @@ class Channel {
   std::size_t channel_;
   Texture texture_;
   Texels texels_;
-  std::string damage_;
+  std::vector<std::string> damage_;
 };
 
 /// How much light a material lets through.
@@ -69,7 +69,7 @@ class Transmission {
         metal_(scene, material.metallic_factor > 0 ? material.metallic_roughness : TextureUse{}, 2) {}
 
   /// What is wrong with the map of what passes; the other is looked at with all images.
-  const std::string& damage() const { return through_.damage(); }
+  const std::vector<std::string>& damage() const { return through_.damage(); }
 
   /// Of a triangle, in the mean.
   float of(const std::array<const Vertex*, 3>& corners) const {
@@ -133,7 +133,7 @@ std::array<std::uint64_t, 2> split(Scene& scene, std::uint32_t material, std::ui
   const Transmission transmission(scene, scene.materials[material]);
   if (!transmission.damage().empty()) {
     const Texture& map = scene.textures[scene.materials[material].transmission_map.texture];
-    tell_damage(scene.images[map.image], transmission.damage(), strict, warnings);
+    tell_damage(scene, map.image, transmission.damage(), strict, warnings);
   }
   std::array<std::uint64_t, 2> counts{};
   for (Mesh& mesh : scene.meshes) {

@@ -13,13 +13,15 @@ namespace {
 using Json = nlohmann::json;
 
 /// What is wrong with an entry, or nothing.
-std::string read_entry(const CacheEntry& entry, std::size_t request_count, MadeImages& made) {
+std::string read_entry(const CacheEntry& entry, std::size_t source_count, std::size_t request_count, MadeImages& made) {
   const pack::View& view = entry.pack.view();
   const Json notes = Json::parse(entry.notes);
-  made.damage = notes.at("damage").get<std::string>();
+  made.damage = notes.at("damage").get<std::vector<std::string>>();
   made.of_request = notes.at("of_request").get<std::vector<std::size_t>>();
   const Json& images = notes.at("images");
-  if (made.of_request.size() != request_count || images.size() != view.images.size()) return "has other images";
+  if (made.damage.size() != source_count || made.of_request.size() != request_count ||
+      images.size() != view.images.size())
+    return "has other images";
   for (const std::size_t number : made.of_request) {
     if (number >= images.size()) return "has other images";
   }
@@ -73,12 +75,13 @@ std::string image_entry(const Scene& scene, std::uint32_t image, const std::vect
   return key.name();
 }
 
-bool load_images(Cache& cache, const std::string& name, std::size_t request_count, MadeImages& made) {
+bool load_images(Cache& cache, const std::string& name, std::size_t source_count, std::size_t request_count,
+                 MadeImages& made) {
   const std::unique_ptr<CacheEntry> entry = cache.load(name);
   if (!entry) return false;
   std::string fault;
   try {
-    fault = read_entry(*entry, request_count, made);
+    fault = read_entry(*entry, source_count, request_count, made);
   } catch (const Json::exception&) {
     fault = "has damaged notes";
   }

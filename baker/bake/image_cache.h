@@ -26,7 +26,7 @@ struct StoredTexels {
 struct MadeImages {
   std::vector<StoredTexels> images;
   std::vector<std::size_t> of_request;  // number among `images`
-  std::string damage;                   // what is wrong with the file although it was decoded; or nothing
+  std::vector<std::string> damage;      // of each file, as SceneTexels has it; nothing else where there is an error
   std::string error;
 };
 
@@ -34,8 +34,9 @@ struct MadeImages {
 std::string image_entry(const Scene& scene, std::uint32_t image, const std::vector<ImageRequest>& requests,
                         const ImageSettings& settings);
 
-/// False where the cache has no such entry, or none for so many requests.
-bool load_images(Cache& cache, const std::string& entry, std::size_t request_count, MadeImages& made);
+/// False where the cache has no such entry, or none of so many files for so many requests.
+bool load_images(Cache& cache, const std::string& entry, std::size_t source_count, std::size_t request_count,
+                 MadeImages& made);
 void store_images(Cache& cache, const std::string& entry, const MadeImages& made);
 
 }  // namespace chandelier::baker

@@ -163,7 +163,9 @@ MadeImages find_or_make_images(const Job& job, const Scene& scene, const std::ve
   for (const std::size_t number : job.requests) asked.push_back(requests[number]);
   const std::string entry = image_entry(scene, job.image, asked, settings);
   MadeImages made;
-  if (load_images(cache, entry, asked.size(), made)) return made;
+  std::size_t sources = 0;
+  for_each_source(scene, job.image, [&](std::uint32_t) { ++sources; });
+  if (load_images(cache, entry, sources, asked.size(), made)) return made;
   made = make_images_of(job, scene, requests, settings);
   if (made.error.empty()) store_images(cache, entry, made);
   return made;
@@ -191,7 +193,7 @@ std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<Imag
                       [&](std::size_t i) { made[i] = find_or_make_images(jobs[i], scene, requests, settings, cache); });
     for (; first < end; ++first) {
       if (!made[first].error.empty()) throw Error(made[first].error);
-      tell_damage(scene.images[jobs[first].image], made[first].damage, settings.strict, warnings);
+      tell_damage(scene, jobs[first].image, made[first].damage, settings.strict, warnings);
       for_each_source(scene, jobs[first].image, [&](std::uint32_t source) {
         if (--users[source] == 0) scene.images[source].bytes = {};
       });
@@ -215,7 +217,7 @@ void tell(const std::vector<MadeImages>& made, std::size_t requests, PassReport&
   std::uint64_t images = 0, texels = 0, squared_error = 0, values = 0, damaged = 0;
   for (const MadeImages& each : made) {
     images += each.images.size();
-    damaged += !each.damage.empty();
+    damaged += std::any_of(each.damage.begin(), each.damage.end(), [](const auto& what) { return !what.empty(); });
     for (const StoredTexels& image : each.images) {
       texels += image.texels;
       squared_error += image.squared_error;

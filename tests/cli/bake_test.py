@@ -320,7 +320,7 @@ class Bad(BakeTest):
                 self.write("a.png", data)
                 said = self.warnings_of("-q", scene, "--json", "report.json")
                 self.assertEqual(len(said), 1, said)
-                self.assertRegex(said[0], r"/a\.gltf: image 0 'wall' \(a\.png\): PNG is .*: what could be decoded is baked; --strict refuses it$")
+                self.assertRegex(said[0], r"/a\.gltf: images: PNG is .*: what could be decoded is baked; --strict refuses it \(image 0 'wall' \(a\.png\)\)$")
                 images = next(each for each in json.loads((self.folder / "report.json").read_text())["passes"] if each["name"] == "images")
                 self.assertEqual(images["counts"]["damaged"], 1)
                 for _ in range(2):  # made and kept, then found

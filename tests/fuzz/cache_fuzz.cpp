@@ -76,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   baker::MadeImages made;
-  for (const std::size_t requests : {1, 2}) baker::load_images(cache, name, requests, made);
+  for (const std::size_t requests : {1, 2}) baker::load_images(cache, name, 1, requests, made);
   std::filesystem::remove(path);
   return 0;
 }

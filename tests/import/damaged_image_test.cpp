@@ -170,8 +170,8 @@ TEST(Damaged, ImagesAreNamedInAWarningOrWhereThatIsStrictInAnError) {
   Warnings warnings;
   bake(gltf.import(), {}, Progress(false), report, warnings);
   ASSERT_EQ(warnings.lines().size(), 1u);
-  EXPECT_NE(warnings.lines()[0].find("scene.gltf: image 0 'bark': JPEG is cut short (" + size +
-                                     " bytes): what could be decoded is baked; --strict refuses it"),
+  EXPECT_NE(warnings.lines()[0].find("scene.gltf: images: JPEG is cut short (" + size +
+                                     " bytes): what could be decoded is baked; --strict refuses it (image 0 'bark')"),
             std::string::npos)
       << warnings.lines()[0];
   BakeSettings strict;
@@ -206,6 +206,46 @@ TEST(Damaged, ChunksWhoseNameIsNoTextAreNamedWithACacheToo) {
   }
 }
 
+/// Two images with the same damage, both in one material.
+TEST(Damaged, EachOfSeveralImagesIsNamed) {
+  const EncodedImage one = with_chunk(noisy_png(), chunk("tEXt", {'a', 0, 'b'}, false));
+  EncodedImage other = one;
+  other.bytes[other.bytes.size() - 1] ^= 1;  // of the end's checksum: another file with the same first damage
+  const Json map = {{"index", 0}}, other_map = {{"index", 1}};
+  const Json plain = {{"pbrMetallicRoughness", {{"baseColorTexture", map}, {"metallicRoughnessTexture", other_map}}}};
+  const Json glossy = {{"diffuseTexture", map}, {"specularGlossinessTexture", other_map}};
+  for (const Json& material : {plain, Json{{"extensions", {{"KHR_materials_pbrSpecularGlossiness", glossy}}}}}) {
+    GltfBuilder gltf = showing(one.bytes, "image/png");
+    gltf.append("images", {{"bufferView", gltf.add_view(other.bytes)}, {"mimeType", "image/png"}, {"name", "leaf"}});
+    gltf.append("textures", {{"source", 1}});
+    gltf.json["materials"] = {material};
+    Cache cache(scratch_folder() / "damaged_cache");
+    for (int run = 0; run < 2; ++run) {  // made, and found
+      Report report;
+      Warnings warnings;
+      bake(gltf.import(), {}, Progress(false), report, warnings, &cache);
+      ASSERT_EQ(warnings.lines().size(), 1u);
+      EXPECT_NE(warnings.lines()[0].find("refuses it (image 0 'bark', image 1 'leaf')"), std::string::npos)
+          << warnings.lines()[0];
+    }
+  }
+}
+
+/// The second image of a conversion is named, and not the first.
+TEST(Damaged, TheMirrorOfADiffuseImageIsNamed) {
+  const EncodedImage damaged = with_chunk(noisy_png(), chunk("tEXt", {'a', 0, 'b'}, false));
+  GltfBuilder gltf = showing(noisy_png().bytes, "image/png");
+  gltf.append("images", {{"bufferView", gltf.add_view(damaged.bytes)}, {"mimeType", "image/png"}, {"name", "leaf"}});
+  gltf.append("textures", {{"source", 1}});
+  const Json glossy = {{"diffuseTexture", {{"index", 0}}}, {"specularGlossinessTexture", {{"index", 1}}}};
+  gltf.json["materials"] = {{{"extensions", {{"KHR_materials_pbrSpecularGlossiness", glossy}}}}};
+  Report report;
+  Warnings warnings;
+  bake(gltf.import(), {}, Progress(false), report, warnings);
+  ASSERT_EQ(warnings.lines().size(), 1u);
+  EXPECT_NE(warnings.lines()[0].find("(image 1 'leaf')"), std::string::npos) << warnings.lines()[0];
+}
+
 TEST(Damaged, MapsThatOnlyTellGlassAreNamedToo) {
   EncodedImage cut = noisy_jpeg();
   cut.bytes.resize(cut.bytes.size() - 2);
@@ -218,9 +258,7 @@ TEST(Damaged, MapsThatOnlyTellGlassAreNamedToo) {
   bake(gltf.import(), settings, Progress(false), report, warnings);
   const std::vector<std::string> lines = warnings.lines();
   EXPECT_EQ(std::count_if(lines.begin(), lines.end(),
-                          [](const std::string& line) {
-                            return line.find("image 0 'bark': JPEG is cut short") != std::string::npos;
-                          }),
+                          [](const std::string& line) { return line.find("JPEG is cut short") != std::string::npos; }),
             1);
   settings.images.strict = true;
   EXPECT_THROW(bake(gltf.import(), settings, Progress(false), report, warnings), Error);
