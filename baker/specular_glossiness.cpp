@@ -19,7 +19,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr float kDielectric = 0.04f, kLeast = 1e-6f;
+constexpr float kLeast = 1e-6f;
 
 /// As bright as it seems (HSP, Finley 2006).
 float brightness(const glm::vec3& color) {

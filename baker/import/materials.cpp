@@ -186,6 +186,10 @@ void Materials::convert(const Json& glossy, bool alpha, const std::string& here,
   TextureUse diffuse = use_texture(glossy, "diffuseTexture", alpha, where);
   TextureUse mirror = use_texture(glossy, "specularGlossinessTexture", false, where);
   const bool colored = diffuse.texture != kNone, mirrored = mirror.texture != kNone;
+  if (!mirrored && glossy.contains("specularGlossinessTexture")) {  // without it the whole surface would be a mirror
+    factors.specular_factor = glm::min(factors.specular_factor, glm::vec3(kDielectric));
+    factors.glossiness_factor = 0;
+  }
   const bool alike = diffuse.uv1 == mirror.uv1 && diffuse.uv_transform == mirror.uv_transform;
   const MetallicColor plain = metallic_color(factors.diffuse_factor, factors.specular_factor);
   out.base_color_factor = {plain.base_color, diffuse_factor[3]};

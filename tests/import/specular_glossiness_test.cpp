@@ -206,6 +206,22 @@ TEST(SpecularGlossiness, OfTwoTexturesIsMadeOfBoth) {
   EXPECT_LT(texel_of(pack, base, 63).g, 5);
 }
 
+TEST(SpecularGlossiness, WhoseMirrorIsLeftOutIsNoMirror) {
+  GltfBuilder gltf = glossy_triangle(
+      {{"diffuseTexture", {{"index", 0}}}, {"specularGlossinessTexture", {{"index", 1}, {"texCoord", 2}}}});
+  add_textures(gltf);
+  Warnings warnings;
+  const Scene scene = gltf.import(&warnings);
+  ASSERT_EQ(warnings.lines().size(), 1u);
+  EXPECT_NE(warnings.lines()[0].find("specularGlossinessTexture: asks for a texture coordinate set above"),
+            std::string::npos);
+  const Material& material = scene.materials.at(0);
+  EXPECT_EQ(material.metallic_factor, 0);
+  EXPECT_EQ(material.roughness_factor, 1);
+  EXPECT_EQ(scene.textures.at(material.base_color.texture).image, 0u);  // the diffuse image as it is
+  EXPECT_EQ(material.metallic_roughness.texture, kNone);
+}
+
 /// A material of a diffuse image `long_side` wide and one high, and a mirror's image that stands on end.
 GltfBuilder crossed_images(int long_side) {
   GltfBuilder gltf =
