@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "is_static.h"
 #include "throws_shadow.h"
 
 namespace chandelier::baker {
@@ -195,7 +196,8 @@ double farthest_of_box(const glm::dvec3& point, const glm::vec3& low, const glm:
 /// Calls visit(batch instance) for those that throw a shadow, moving ones where they rest, and whose boxes are not
 /// farther away than `nearest`, which it may lessen.
 template <typename Visit>
-void visit_casters_near(const pack::Contents& pack, const glm::dvec3& point, const double& nearest, Visit visit) {
+void visit_casters_near(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, const glm::dvec3& point,
+                        const double& nearest, Visit visit) {
   const auto meets = [&](const glm::vec3& low, const glm::vec3& high) {
     return is_near_box(point, nearest, low, high);
   };
@@ -204,19 +206,30 @@ void visit_casters_near(const pack::Contents& pack, const glm::dvec3& point, con
     return false;
   };
   visit_batches(pack, meets, visit_caster);
-  for (const pack::BatchInstance& draw : pack.batch_instances) {
-    if (pack.instances[draw.instance].dynamic == 1 && meets(draw.bounds_min_ws, draw.bounds_max_ws)) visit_caster(draw);
+  for (const std::uint32_t number : moving) {
+    const pack::BatchInstance& draw = pack.batch_instances[number];
+    if (meets(draw.bounds_min_ws, draw.bounds_max_ws)) visit_caster(draw);
   }
 }
 
 }  // namespace
 
-double nearest_caster_m(const pack::Contents& pack, const glm::dvec3& at, double most_m) {
+std::vector<std::uint32_t> moving_batch_instances(const pack::Contents& pack) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t i = 0; i < pack.batch_instances.size(); ++i) {
+    if (!is_static(pack, pack.batch_instances[i])) out.push_back(i);
+  }
+  return out;
+}
+
+double nearest_caster_m(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, const glm::dvec3& at,
+                        double most_m) {
   double nearest = most_m;
-  visit_casters_near(pack, at, nearest, [&](const pack::BatchInstance& draw) {  // so that few triangles are looked at
-    nearest = std::min(nearest, farthest_of_box(at, draw.bounds_min_ws, draw.bounds_max_ws));
-  });
-  visit_casters_near(pack, at, nearest, [&](const pack::BatchInstance& draw) {
+  visit_casters_near(pack, moving, at, nearest,
+                     [&](const pack::BatchInstance& draw) {  // so that few triangles are looked at
+                       nearest = std::min(nearest, farthest_of_box(at, draw.bounds_min_ws, draw.bounds_max_ws));
+                     });
+  visit_casters_near(pack, moving, at, nearest, [&](const pack::BatchInstance& draw) {
     const pack::Batch& batch = pack.batches[draw.batch];
     const glm::dmat4 world = world_from_local(pack.instances[draw.instance]);
     for (std::uint32_t i = 0; i < batch.index_count; i += 3) {

@@ -30,9 +30,9 @@ class Groups {
 };
 
 /// Rounded down, so that nothing is nearer.
-void measure_nearest(const pack::Contents& pack, pack::Light& light) {
+void measure_nearest(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, pack::Light& light) {
   if (light.type == pack::LightType::directional) return;
-  const double nearest = nearest_caster_m(pack, glm::dvec3(light.position_ws), light.range_m);
+  const double nearest = nearest_caster_m(pack, moving, glm::dvec3(light.position_ws), light.range_m);
   light.nearest_caster_m = static_cast<float>(nearest);
   if (double{light.nearest_caster_m} > nearest) light.nearest_caster_m = std::nextafter(light.nearest_caster_m, 0.0f);
 }
@@ -78,7 +78,9 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     if (!pack.voxel_grid.empty()) out.voxel = cell_at(pack.voxel_grid[0], out.position_ws);
     pack.lights.push_back(out);
   }
-  tbb::parallel_for(std::size_t{0}, pack.lights.size(), [&](std::size_t i) { measure_nearest(pack, pack.lights[i]); });
+  const std::vector<std::uint32_t> moving = moving_batch_instances(pack);
+  tbb::parallel_for(std::size_t{0}, pack.lights.size(),
+                    [&](std::size_t i) { measure_nearest(pack, moving, pack.lights[i]); });
 }
 
 void make_cameras(const Scene& scene, Strings& strings, pack::Contents& pack) {

@@ -88,12 +88,13 @@ TEST(NearestCaster, IsTheNearestOfAllTriangles) {
 TEST(NearestCaster, LeavesOutWhatThrowsNoShadow) {
   pack::Contents pack = soup_with_lamps(50, 1).bake();
   const glm::dvec3 at(pack.lights[0].position_ws);
-  EXPECT_LT(nearest_caster_m(pack, at, 100), 100);
+  const std::vector<std::uint32_t> moving = moving_batch_instances(pack);
+  EXPECT_LT(nearest_caster_m(pack, moving, at, 100), 100);
   for (pack::Instance& instance : pack.instances) instance.shadowless = 1;
-  EXPECT_EQ(nearest_caster_m(pack, at, 100), 100);
+  EXPECT_EQ(nearest_caster_m(pack, moving, at, 100), 100);
   for (pack::Instance& instance : pack.instances) instance.shadowless = 0;
   for (pack::Material& material : pack.materials) material.shadowless = 1;
-  EXPECT_EQ(nearest_caster_m(pack, at, 100), 100);
+  EXPECT_EQ(nearest_caster_m(pack, moving, at, 100), 100);
 }
 
 /// A lamp so far under a level square of 2 m.
