@@ -106,18 +106,21 @@ bool moves(const Motion& motion, const Json& skin) {
                      [&](const Json& joint) { return motion.moves[joint.get<std::size_t>()] != 0; });
 }
 
-/// Whether joints that stand as they do show a mesh as its bind pose, moved as a whole.
-bool is_bind_pose(const std::vector<glm::dmat4>& world_from_bind) {
-  constexpr double kRounding = 1e-4;  // of inverse bind matrices, which are floats
+/// Whether joints that stand as they do show a mesh as its bind pose, moved as a whole. `places`: the joints' in the
+/// world. What is compared is as far from the first joint as the skin is large, wherever in the world it stands.
+bool is_bind_pose(const std::vector<glm::dmat4>& world_from_bind, const std::vector<glm::dvec3>& places) {
+  constexpr double kRounding = 1e-4, kLeast_m = 0.01;  // of inverse bind matrices, which are floats
+  const auto largest = [](const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
   const glm::dmat4& first = world_from_bind[0];
-  double size = 1;
-  for (int i = 0; i < 16; ++i) size = std::max(size, std::abs(first[i / 4][i % 4]));
-  for (const glm::dmat4& each : world_from_bind) {
-    for (int i = 0; i < 16; ++i) {
-      if (std::abs(each[i / 4][i % 4] - first[i / 4][i % 4]) > kRounding * size) return false;
+  double scale = 0, size_m = std::max(kLeast_m, largest(glm::dvec3(first[3]) - places[0]));
+  for (int c = 0; c < 3; ++c) scale = std::max(scale, largest(glm::dvec3(first[c])));
+  for (const glm::dvec3& place : places) size_m = std::max(size_m, largest(place - places[0]));
+  return std::all_of(world_from_bind.begin(), world_from_bind.end(), [&](const glm::dmat4& each) {
+    for (int c = 0; c < 4; ++c) {
+      if (largest(glm::dvec3(each[c]) - glm::dvec3(first[c])) > kRounding * (c == 3 ? size_m : scale)) return false;
     }
-  }
-  return true;
+    return true;
+  });
 }
 
 /// A skin whose joints an animation moves goes into the scene; of others, where they stand is all there is to know.
@@ -127,19 +130,21 @@ void add_skin(const Gltf& gltf, std::size_t number, const std::vector<glm::dmat4
   const std::string here = place(gltf.json, "skins", number);
   const auto matrices = read_bind_matrices(gltf, json, gltf.file + ": " + here);
   Pose pose;
+  std::vector<glm::dvec3> places;
   Skin skin;
   skin.name = json.value("name", "");
   for (std::size_t i = 0; i < matrices.size(); ++i) {
     const auto node = json["joints"][i].get<std::size_t>();
     pose.world_from_bind.push_back(world[node] * glm::dmat4(matrices[i]));
+    places.emplace_back(world[node][3]);
     skin.joints.push_back({motion.node[node], matrices[i]});
   }
-  pose.origin_ws = glm::dvec3(world[json["joints"][0].get<std::size_t>()][3]);
+  pose.origin_ws = places[0];
   if (!moves(motion, json)) {
     motion.pose[number] = std::move(pose);
     return;
   }
-  if (!is_bind_pose(pose.world_from_bind)) {
+  if (!is_bind_pose(pose.world_from_bind, places)) {
     warnings.add(gltf.file, here, "a skin that is animated is not played: its meshes are shown in their bind pose");
   }
   motion.placed[number] = pose.world_from_bind[0];

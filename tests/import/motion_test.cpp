@@ -167,6 +167,20 @@ TEST(Skin, ThatIsAnimatedSaysWhereItsBindPoseIsNotWhatTheFileShows) {
   EXPECT_NE(one.lines()[0].find("skin 0 'leg': a skin that is animated is not played"), std::string::npos);
 }
 
+TEST(Skin, ThatStandsFarAwaySaysSoToo) {
+  GltfBuilder gltf = skinned_triangle();
+  gltf.json["scenes"] = {{{"nodes", {0, 3}}}};
+  gltf.json["scene"] = 0;
+  gltf.add_node({{"translation", {500000.3, 12.7, -70000.1}}, {"rotation", {0, 0.6, 0, 0.8}}, {"children", {1}}});
+  Warnings none, one;
+  gltf.import(&none);
+  EXPECT_TRUE(none.lines().empty());
+  gltf.json["nodes"][2]["translation"] = {0, 1, 0.5};
+  gltf.import(&one);
+  ASSERT_EQ(one.lines().size(), 1u);
+  EXPECT_NE(one.lines()[0].find("skin 0 'leg': a skin that is animated is not played"), std::string::npos);
+}
+
 TEST(Animation, KeepsAMeshThatGrowsFromNothing) {
   for (const bool above : {false, true}) {  // the mesh's own node, or the one above it
     GltfBuilder gltf = moving_triangle("scale");
