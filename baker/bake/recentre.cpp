@@ -50,19 +50,30 @@ bool is_float(double value) {
   return double{static_cast<float>(value)} == value;
 }
 
-/// Where floats are coarse, whether every coordinate of all places is one all the same: then they have been rounded. A
-/// scene that is placed far away as a whole has others too.
+bool is_far(const glm::dvec3& place) {
+  return std::max({spacing(place.x), spacing(place.y), spacing(place.z)}) > kCoarse_m;
+}
+
+/// Of a far place: every coordinate for which floats are coarse is one all the same.
+bool is_of_floats(const glm::dvec3& place) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (spacing(place[axis]) > kCoarse_m && !is_float(place[axis])) return false;
+  }
+  return true;
+}
+
+/// Whether most of the far places are floats: then they have been rounded. Of a scene that is placed far away as a
+/// whole most are not, and of a scene that was rounded node by node all but what hangs from other nodes are.
 bool are_rounded(const std::vector<glm::dvec3>& places) {
-  return std::ranges::all_of(places, [](const glm::dvec3& place) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (spacing(place[axis]) > kCoarse_m && !is_float(place[axis])) return false;
-    }
-    return true;
-  });
+  const auto far = std::ranges::count_if(places, is_far);
+  const auto floats =
+      std::ranges::count_if(places, [](const glm::dvec3& place) { return is_far(place) && is_of_floats(place); });
+  return 2 * floats > far;
 }
 
 /// Nobody can tell where it was rounded from what was meant: whole millimetres are.
 bool is_coarse(const glm::dvec3& place) {
+  if (!is_of_floats(place)) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const double mm = 1000 * place[axis];
     if (spacing(place[axis]) > kCoarse_m && std::abs(mm - std::nearbyint(mm)) > 1e-3) return true;

@@ -231,6 +231,14 @@ TEST(Recentre, WarnsOnceOfWhatTheFilesFloatsHaveRounded) {
   rounded.json["nodes"][0]["translation"] = {double{500000.7f}, 0, 0};
   rounded.json["nodes"][0]["name"] = "wall";
   EXPECT_EQ(warnings_of(rounded).size(), 1u);
+  rounded.add_node({{"mesh", 0}, {"translation", {double{500003.4f}, 0, 0}}, {"children", {2}}});
+  rounded.add_node({{"mesh", 0}, {"translation", {0.1, 0, 0}}});  // hangs from it, and is no float
+  const auto parented = warnings_of(rounded);
+  ASSERT_EQ(parented.size(), 1u);
+  EXPECT_NE(parented[0].find("(wall, "), std::string::npos) << parented[0];
+  EXPECT_EQ(parented[0].find("node 2"), std::string::npos) << parented[0];
+  rounded.json["nodes"].erase(1);
+  rounded.json["nodes"].erase(1);
   rounded.json["nodes"][0]["translation"] = {500000.7, 0, 0};  // a double: it can be had
   EXPECT_TRUE(warnings_of(rounded).empty());
   rounded.json["nodes"][0]["translation"] = {500000, 0, 0};  // meant so
