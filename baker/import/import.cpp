@@ -27,6 +27,7 @@ struct Import {
   Scene& scene;
   Warnings& warnings;
   Motion motion;
+  MorphWeights morphs;
   MeshUses meshes;
   std::vector<const MeshShape*> mesh_order;  // as the scene has them
   ImportCounts counts;
@@ -93,7 +94,7 @@ void visit_node(Import& in, const PlacedNode& placed) {
   if (!placed.visible) return count_hidden(in, placed);
   if (node.mesh < 0) return;
   if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return warn_of_scale(in, placed);
-  const auto [it, added] = in.meshes.try_emplace(shape_of(in.gltf, in.motion, placed.node));
+  const auto [it, added] = in.meshes.try_emplace(shape_of(in.gltf, in.motion, in.morphs, placed.node));
   MeshUse& use = it->second;
   use.skinned = use.skinned || skin_of(in, node) != kNone || pose_of(in, node);
   if (!added) return;
@@ -107,7 +108,7 @@ void check_size(const Import& in) {
   GeometrySize total;
   for (const MeshShape* shape : in.mesh_order) {
     for (std::size_t p = 0; p < in.gltf.model.meshes[shape->mesh].primitives.size(); ++p) {
-      add_size(in.gltf, shape->mesh, p, shape->morph_weights, total);
+      add_size(in.gltf, shape->mesh, p, in.morphs[shape->morph_weights], total);
     }
   }
 }
@@ -122,7 +123,7 @@ std::vector<std::vector<ReadPrimitive>> read_primitives(const Import& in) {
   tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
     const auto [m, p] = jobs[i];
     const MeshShape& shape = *in.mesh_order[m];
-    out[m][p] = read_primitive(in.gltf, shape.mesh, p, in.meshes.at(shape).skinned, shape.morph_weights);
+    out[m][p] = read_primitive(in.gltf, shape.mesh, p, in.meshes.at(shape).skinned, in.morphs[shape.morph_weights]);
   });
   return out;
 }
@@ -201,7 +202,7 @@ void add_instances(Import& in, const PlacedNode& placed) {
   const bool shadowless = is_shadowless(in.gltf, placed.node, in.warnings);
   if (node.mesh < 0 || !placed.visible) return;
   if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return;
-  const MeshUse& mesh = in.meshes.at(shape_of(in.gltf, in.motion, placed.node));
+  const MeshUse& mesh = in.meshes.at(shape_of(in.gltf, in.motion, in.morphs, placed.node));
   const std::string here = place(in.gltf.json, "nodes", placed.node), where = in.gltf.file + ": " + here;
   MeshInstance instance{node.name, where, placed.world_from_local, mesh.number, in.motion.mover(placed.node)};
   instance.shadowless = shadowless;
@@ -237,7 +238,7 @@ ImportCounts import_file(const std::filesystem::path& path, Scene& scene, Warnin
   const ChosenScene chosen = choose_scene(gltf, settings.scene, warnings);
   const std::vector<PlacedNode> nodes = place_nodes(gltf, chosen.number);
   Motion motion = add_motion(gltf, nodes, scene, warnings);
-  Import in{gltf, scene, warnings, std::move(motion), {}, {}, {}};
+  Import in{gltf, scene, warnings, std::move(motion), MorphWeights(gltf), {}, {}, {}};
   for (const PlacedNode& placed : nodes) visit_node(in, placed);
   check_size(in);
   std::vector<std::vector<ReadPrimitive>> primitives = read_primitives(in);

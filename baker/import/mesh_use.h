@@ -13,8 +13,8 @@ namespace chandelier::baker {
 /// A glTF mesh in one shape. Nodes that show the same one share it.
 struct MeshShape {
   std::size_t mesh = 0;
-  std::vector<double> morph_weights;  // one per morph target, or none
-  std::size_t posed_by = SIZE_MAX;    // glTF's number of a skin that nothing moves; SIZE_MAX: of none
+  std::uint32_t morph_weights = 0;  // their number among all
+  std::size_t posed_by = SIZE_MAX;  // glTF's number of a skin that nothing moves; SIZE_MAX: of none
 
   auto operator<=>(const MeshShape&) const = default;
 };
@@ -29,10 +29,10 @@ struct MeshUse {
 using MeshUses = std::map<MeshShape, MeshUse>;
 
 /// The shape of a node's mesh. It must have one.
-inline MeshShape shape_of(const Gltf& gltf, const Motion& motion, std::size_t number) {
+inline MeshShape shape_of(const Gltf& gltf, const Motion& motion, MorphWeights& weights, std::size_t number) {
   const tinygltf::Node& node = gltf.model.nodes[number];
   const bool posed = node.skin >= 0 && !motion.pose[static_cast<std::size_t>(node.skin)].world_from_bind.empty();
-  return {static_cast<std::size_t>(node.mesh), morph_weights(gltf, number),
+  return {static_cast<std::size_t>(node.mesh), weights.of_node(number),
           posed ? static_cast<std::size_t>(node.skin) : SIZE_MAX};
 }
 

@@ -46,14 +46,22 @@ bool is_finite(const glm::vec3& v) {
 
 }  // namespace
 
-std::vector<double> morph_weights(const Gltf& gltf, std::size_t number) {
-  const Json& node = gltf.json["nodes"][number];
-  if (!node.contains("mesh")) return {};
-  const Json& mesh = gltf.json["meshes"][node["mesh"].get<std::size_t>()];
-  const Json& owner = node.contains("weights") ? node : mesh;
-  const auto weights = owner.value("weights", std::vector<double>());
+std::uint32_t MorphWeights::number_of(const Json& owner) {
+  auto weights = owner.value("weights", std::vector<double>());
   const bool any = std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0; });
-  return any ? weights : std::vector<double>();
+  if (!any) weights.clear();
+  const auto [it, added] = numbers_.try_emplace(std::move(weights), static_cast<std::uint32_t>(by_number_.size()));
+  if (added) by_number_.push_back(&it->first);
+  return it->second;
+}
+
+std::uint32_t MorphWeights::of_node(std::size_t number) {
+  const Json& node = gltf_.json["nodes"][number];
+  if (node.contains("weights")) return number_of(node);
+  const auto mesh = node["mesh"].get<std::size_t>();
+  const auto known = of_mesh_.find(mesh);
+  if (known != of_mesh_.end()) return known->second;
+  return of_mesh_[mesh] = number_of(gltf_.json["meshes"][mesh]);
 }
 
 void add_morph_size(const Gltf& gltf, const tinygltf::Primitive& primitive, std::span<const double> weights,

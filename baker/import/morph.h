@@ -2,14 +2,34 @@
 // Morph targets, as the file's own weights have them.
 #pragma once
 
+#include <map>
 #include <span>
+#include <vector>
 
 #include "vertices.h"
 
 namespace chandelier::baker {
 
-/// The weights of the mesh that a node shows: its own, else the mesh's. Empty where all are 0: the base mesh.
-std::vector<double> morph_weights(const Gltf& gltf, std::size_t node);
+/// All different weights of the meshes that nodes show, each once and numbered: a file may name thousands for thousands
+/// of nodes in a few bytes each.
+class MorphWeights {
+ public:
+  explicit MorphWeights(const Gltf& gltf) : gltf_(gltf) {}
+
+  /// The number of the weights of the mesh that a node shows: the node's own, else the mesh's. It must have a mesh.
+  std::uint32_t of_node(std::size_t node);
+
+  /// One per morph target. Empty where all are 0: the base mesh.
+  const std::vector<double>& operator[](std::uint32_t number) const { return *by_number_[number]; }
+
+ private:
+  std::uint32_t number_of(const Json& owner);
+
+  const Gltf& gltf_;
+  std::map<std::vector<double>, std::uint32_t> numbers_;
+  std::vector<const std::vector<double>*> by_number_;  // keys of numbers_
+  std::map<std::size_t, std::uint32_t> of_mesh_;       // those that were asked for
+};
 
 /// Adds what a primitive's targets move to `morphed`, in vertices, before anything of it is read. Throws Error where
 /// weights do not suit targets, or above 2^30.
