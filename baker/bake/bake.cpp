@@ -109,9 +109,8 @@ pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress&
   Strings strings(pack.strings);
   report.run("recentre", [&](PassReport& pass) { recentre(scene, pass, warnings); });
   std::vector<ImageRequest> requests;
-  report.run("glass", [&](PassReport& pass) {
-    find_glass(scene, settings.glass_shadows, settings.images.strict, pass, warnings);
-  });
+  report.run("glass",
+             [&](PassReport& pass) { find_glass(scene, settings.glass_shadows, settings.images, pass, warnings); });
   report.run("materials", [&](PassReport& pass) {
     requests = make_materials(scene, settings.images.textures != TextureMode::none, strings, pack);
     pass.bytes = bytes_of(pack.materials, pack.textures);

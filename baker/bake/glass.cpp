@@ -3,9 +3,13 @@
 // that is, KHR_materials_transmission says: factor · texture (red), of what is no metal (1 - factor · texture (blue)).
 #include "glass.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "decode_scene.h"
 
@@ -22,27 +26,51 @@ std::int64_t wrapped(std::int64_t texel, std::int64_t size, Wrap wrap) {
   return at < size ? at : period - 1 - at;
 }
 
+/// One channel of an image.
+struct Plane {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> values;
+  std::vector<std::string> damage;  // of the files that the image is made of
+};
+
+/// Decodes each image once for each channel that is asked for, however many materials ask.
+class Planes {
+ public:
+  const Plane& of(const Scene& scene, std::uint32_t image, std::size_t channel) {
+    const auto [it, added] = planes_.try_emplace({image, channel});
+    Plane& plane = it->second;
+    if (!added) return plane;
+    SceneTexels decoded = decode_image(scene, image);
+    const Texels& texels = decoded.as(ImageUse::data);
+    plane = {texels.width, texels.height, {}, std::move(decoded.damage)};
+    plane.values.resize(texels.rgba.size() / 4);
+    for (std::size_t i = 0; i < plane.values.size(); ++i) plane.values[i] = texels.rgba[4 * i + channel];
+    return plane;
+  }
+
+ private:
+  std::map<std::pair<std::uint32_t, std::size_t>, Plane> planes_;
+};
+
 /// One channel of a texture; 1 everywhere where there is none.
 class Channel {
  public:
-  Channel(const Scene& scene, const TextureUse& use, std::size_t channel) : use_(use), channel_(channel) {
+  Channel(const Scene& scene, const TextureUse& use, std::size_t channel, Planes& planes) : use_(use) {
     if (use.texture == kNone) return;
     texture_ = scene.textures[use.texture];
-    SceneTexels decoded = decode_image(scene, texture_.image);
-    damage_ = decoded.damage;
-    texels_ = decoded.as(ImageUse::data);
+    plane_ = &planes.of(scene, texture_.image, channel);
   }
 
-  /// What is wrong with the files that the texture is made of.
-  const std::vector<std::string>& damage() const { return damage_; }
+  /// What is wrong with the files that the texture is made of. It must be there.
+  const std::vector<std::string>& damage() const { return plane_->damage; }
 
   /// At the nearest texel: what is asked is the mean over a triangle.
   float at(const glm::vec2& uv0, const glm::vec2& uv1) const {
-    if (texels_.rgba.empty()) return 1;
+    if (!plane_) return 1;
     const glm::vec3 uv(use_.uv1 ? uv1 : uv0, 1);
-    const std::int64_t x = texel(glm::dot(use_.uv_transform[0], uv), texels_.width, texture_.wrap_u);
-    const std::int64_t y = texel(glm::dot(use_.uv_transform[1], uv), texels_.height, texture_.wrap_v);
-    return static_cast<float>(texels_.rgba[static_cast<std::size_t>(4 * (y * texels_.width + x)) + channel_]) / 255;
+    const std::int64_t x = texel(glm::dot(use_.uv_transform[0], uv), plane_->width, texture_.wrap_u);
+    const std::int64_t y = texel(glm::dot(use_.uv_transform[1], uv), plane_->height, texture_.wrap_v);
+    return static_cast<float>(plane_->values[static_cast<std::size_t>(y * plane_->width + x)]) / 255;
   }
 
  private:
@@ -53,20 +81,18 @@ class Channel {
   }
 
   TextureUse use_;
-  std::size_t channel_;
   Texture texture_;
-  Texels texels_;
-  std::vector<std::string> damage_;
+  const Plane* plane_ = nullptr;
 };
 
 /// How much light a material lets through.
 class Transmission {
  public:
-  Transmission(const Scene& scene, const Material& material)
+  Transmission(const Scene& scene, const Material& material, Planes& planes)
       : factor_(material.transmission_factor),
         metallic_(material.metallic_factor),
-        through_(scene, material.transmission_map, 0),
-        metal_(scene, material.metallic_factor > 0 ? material.metallic_roughness : TextureUse{}, 2) {}
+        through_(scene, material.transmission_map, 0, planes),
+        metal_(scene, material.metallic_factor > 0 ? material.metallic_roughness : TextureUse{}, 2, planes) {}
 
   /// What is wrong with the map of what passes; the other is looked at with all images.
   const std::vector<std::string>& damage() const { return through_.damage(); }
@@ -96,18 +122,18 @@ class Transmission {
   Channel through_, metal_;
 };
 
-/// Which triangles of a primitive are glass.
-std::vector<bool> glass_triangles(const Primitive& primitive, const Transmission& transmission) {
-  std::vector<bool> out;
-  for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-    const auto corner = [&](std::size_t c) { return &primitive.vertices[primitive.indices[i + c]]; };
-    out.push_back(transmission.of({corner(0), corner(1), corner(2)}) >= kLeast);
-  }
+/// Of each triangle of a primitive whether it is glass.
+std::vector<std::uint8_t> glass_triangles(const Primitive& primitive, const Transmission& transmission) {
+  std::vector<std::uint8_t> out(primitive.indices.size() / 3);
+  tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) {
+    const auto corner = [&](std::size_t c) { return &primitive.vertices[primitive.indices[3 * i + c]]; };
+    out[i] = transmission.of({corner(0), corner(1), corner(2)}) >= kLeast;
+  });
   return out;
 }
 
 /// The triangles that are glass, or those that are not, with the vertices that they need.
-Primitive part_of(const Primitive& whole, const std::vector<bool>& is_glass, bool glass) {
+Primitive part_of(const Primitive& whole, const std::vector<std::uint8_t>& is_glass, bool glass) {
   Primitive out;
   out.material = whole.material;
   out.needs_normals = whole.needs_normals;
@@ -115,7 +141,7 @@ Primitive part_of(const Primitive& whole, const std::vector<bool>& is_glass, boo
   out.tangents_from_uv1 = whole.tangents_from_uv1;
   std::vector<std::uint32_t> numbers(whole.vertices.size(), kNone);
   for (std::size_t i = 0; i < 3 * is_glass.size(); ++i) {
-    if (is_glass[i / 3] != glass) continue;
+    if ((is_glass[i / 3] != 0) != glass) continue;
     std::uint32_t& number = numbers[whole.indices[i]];
     if (number == kNone) {
       number = static_cast<std::uint32_t>(out.vertices.size());
@@ -129,10 +155,10 @@ Primitive part_of(const Primitive& whole, const std::vector<bool>& is_glass, boo
 
 /// Gives the glass among a material's triangles the material `glass`. Returns how many there are, and how many others.
 std::array<std::uint64_t, 2> split(Scene& scene, std::uint32_t material, std::uint32_t glass, bool strict,
-                                   Warnings& warnings) {
-  const Transmission transmission(scene, scene.materials[material]);
-  if (!transmission.damage().empty()) {
-    const Texture& map = scene.textures[scene.materials[material].transmission_map.texture];
+                                   Planes& planes, Warnings& warnings) {
+  const Transmission transmission(scene, scene.materials[material], planes);
+  if (const std::uint32_t texture = scene.materials[material].transmission_map.texture; texture != kNone) {
+    const Texture& map = scene.textures[texture];
     tell_damage(scene, map.image, transmission.damage(), strict, warnings);
   }
   std::array<std::uint64_t, 2> counts{};
@@ -140,8 +166,8 @@ std::array<std::uint64_t, 2> split(Scene& scene, std::uint32_t material, std::ui
     const std::size_t primitives = mesh.primitives.size();
     for (std::size_t p = 0; p < primitives; ++p) {
       if (mesh.primitives[p].material != material) continue;
-      const std::vector<bool> is_glass = glass_triangles(mesh.primitives[p], transmission);
-      const auto through = static_cast<std::uint64_t>(std::count(is_glass.begin(), is_glass.end(), true));
+      const std::vector<std::uint8_t> is_glass = glass_triangles(mesh.primitives[p], transmission);
+      const auto through = static_cast<std::uint64_t>(std::count(is_glass.begin(), is_glass.end(), 1));
       counts[0] += through;
       counts[1] += is_glass.size() - through;
       if (through == 0) continue;
@@ -162,14 +188,18 @@ bool has_maps(const Material& material) {
 }
 
 /// Whether any of the material throws no shadow now.
-bool find_glass_of(Scene& scene, std::uint32_t number, bool strict, Warnings& warnings) {
+bool find_glass_of(Scene& scene, std::uint32_t number, const ImageSettings& images, Planes& planes,
+                   Warnings& warnings) {
   Material& material = scene.materials[number];
-  if (!has_maps(material)) {
+  const bool textures = images.textures != TextureMode::none;
+  // Without its map, which may be black nearly everywhere, the whole surface would let light through.
+  if (!textures && material.transmission_map.texture != kNone) return false;
+  if (!textures || !has_maps(material)) {
     material.shadowless = material.transmission_factor * (1 - material.metallic_factor) >= kLeast;
     return material.shadowless;
   }
   const std::uint32_t glass = fit_u32(scene.materials.size(), "materials");
-  const auto [through, others] = split(scene, number, glass, strict, warnings);
+  const auto [through, others] = split(scene, number, glass, images.strict, planes, warnings);
   if (through == 0) return false;
   scene.materials.push_back(scene.materials[number]);
   scene.materials.back().shadowless = true;
@@ -186,14 +216,15 @@ bool find_glass_of(Scene& scene, std::uint32_t number, bool strict, Warnings& wa
 
 }  // namespace
 
-void find_glass(Scene& scene, bool glass_shadows, bool strict, PassReport& pass, Warnings& warnings) {
+void find_glass(Scene& scene, bool glass_shadows, const ImageSettings& images, PassReport& pass, Warnings& warnings) {
   std::uint64_t found = 0;
+  Planes planes;
   const auto materials = static_cast<std::uint32_t>(glass_shadows ? 0 : scene.materials.size());
   for (std::uint32_t m = 0; m < materials; ++m) {
     const Material& material = scene.materials[m];
     if (material.shadow || material.transmission_factor < kLeast) continue;
     const std::string name = material.name.empty() ? material.where : material.name;
-    if (!find_glass_of(scene, m, strict, warnings)) continue;
+    if (!find_glass_of(scene, m, images, planes, warnings)) continue;
     ++found;
     warnings.add("scene", "materials",
                  "light passes through them, so they throw no shadow (--glass-shadows gives them one)", name);

@@ -216,5 +216,19 @@ TEST(Glass, LeavesItsShellOpen) {
   for (const pack::Batch& batch : gltf.bake().batches) EXPECT_EQ(batch.closed, 0u);
 }
 
+TEST(Glass, WithoutTexturesIsToldByFactorsAlone) {
+  GltfBuilder gltf = pane(1);
+  const int view = gltf.add_view(std::vector<std::uint8_t>{1, 2, 3, 4});  // no image, which nobody looks at
+  gltf.json["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}};
+  gltf.json["textures"] = {{{"source", 0}}};
+  material(gltf)["pbrMetallicRoughness"] = {{"metallicFactor", 0.25}, {"metallicRoughnessTexture", {{"index", 0}}}};
+  BakeSettings settings;
+  EXPECT_THROW(gltf.bake(settings), Error);
+  settings.images.textures = TextureMode::none;
+  EXPECT_EQ(casting(gltf.bake(settings)), std::pair(0u, 1u));
+  material(gltf)["extensions"]["KHR_materials_transmission"]["transmissionTexture"] = {{"index", 0}};
+  EXPECT_EQ(casting(gltf.bake(settings)), std::pair(1u, 0u));  // without the map that says where
+}
+
 }  // namespace
 }  // namespace chandelier::baker::test
