@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps files, decodes data URIs, keeps other URIs inside the glTF's folder.
+// Maps files, decodes data URIs, takes other URIs relative to the glTF's folder.
 #include "files.h"
 
 #include <fcntl.h>
