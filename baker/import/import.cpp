@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <glm/ext/matrix_transform.hpp>
+#include <set>
 
 #include "extras.h"
 #include "geometry.h"
@@ -31,6 +32,7 @@ struct Import {
   MeshUses meshes;
   std::vector<const MeshShape*> mesh_order;  // as the scene has them
   ImportCounts counts;
+  std::set<std::size_t> lights;  // that nodes have, as the file numbers them
 };
 
 std::uint32_t skin_of(const Import& in, const tinygltf::Node& node) {
@@ -83,7 +85,7 @@ void count_hidden(Import& in, const PlacedNode& placed) {
 void visit_node(Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   const std::size_t lights = in.scene.lights.size(), cameras = in.scene.cameras.size();
-  if (placed.visible) add_light(in.gltf, placed, in.scene, in.warnings);
+  if (placed.visible) add_light(in.gltf, placed, in.lights, in.scene, in.warnings);
   add_camera(in.gltf, placed, in.scene, in.warnings);
   const std::uint32_t mover = in.motion.mover(placed.node);
   if (in.scene.lights.size() > lights) {
@@ -238,7 +240,7 @@ ImportCounts import_file(const std::filesystem::path& path, Scene& scene, Warnin
   const ChosenScene chosen = choose_scene(gltf, settings.scene, warnings);
   const std::vector<PlacedNode> nodes = place_nodes(gltf, chosen.number);
   Motion motion = add_motion(gltf, nodes, scene, warnings);
-  Import in{gltf, scene, warnings, std::move(motion), MorphWeights(gltf), {}, {}, {}};
+  Import in{gltf, scene, warnings, std::move(motion), MorphWeights(gltf), {}, {}, {}, {}};
   for (const PlacedNode& placed : nodes) visit_node(in, placed);
   check_size(in);
   std::vector<std::vector<ReadPrimitive>> primitives = read_primitives(in);

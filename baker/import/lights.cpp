@@ -57,7 +57,8 @@ bool aim(const PlacedNode& placed, Light& light) {
 
 }  // namespace
 
-void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings) {
+void add_light(const Gltf& gltf, const PlacedNode& placed, std::set<std::size_t>& seen, Scene& scene,
+               Warnings& warnings) {
   const tinygltf::Node& node = gltf.model.nodes[placed.node];
   const auto extension = node.extensions.find("KHR_lights_punctual");
   if (extension == node.extensions.end() || !extension->second.Has("light")) return;
@@ -74,15 +75,17 @@ void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warning
   if (in.type == "directional") out.type = LightType::directional;
   if (in.range > 0) out.range_m = static_cast<float>(in.range);
   const std::string of_light = place(lights, "lights", number);
-  if (lights["lights"][number].value("range", 1.0) == 0) warn_of_range(gltf, out, of_light, warnings);
-  read_extras(gltf, lights["lights"][number], of_light, out, warnings);
+  Warnings said_before;
+  Warnings& once = seen.insert(number).second ? warnings : said_before;  // not again for each node with the light
+  if (lights["lights"][number].value("range", 1.0) == 0) warn_of_range(gltf, out, of_light, once);
+  read_extras(gltf, lights["lights"][number], of_light, out, once);
   read_extras(gltf, gltf.json["nodes"][placed.node], here, out, warnings);
   if (out.intensity == 0 || std::max({out.color.r, out.color.g, out.color.b}) == 0) {
     warnings.add(gltf.file, here, "a light without intensity or colour is skipped");
     return;
   }
   if (std::max({out.color.r, out.color.g, out.color.b}) > 1) {
-    warnings.add(gltf.file, here, "a light's colour is above 1, where glTF's end: it is that much brighter");
+    once.add(gltf.file, of_light, "a light's colour is above 1, where glTF's end: it is that much brighter");
   }
   if (!aim(placed, out)) {
     warnings.add(gltf.file, here, "a light whose node has zero scale has no direction and is skipped");

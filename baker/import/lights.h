@@ -2,13 +2,17 @@
 // Lights: KHR_lights_punctual, and what their author adds in `extras.chandelier` (light_extras.schema.json).
 #pragma once
 
+#include <set>
+
 #include "../scene.h"
 #include "gltf.h"
 #include "nodes.h"
 
 namespace chandelier::baker {
 
-/// Appends the node's light to the scene, where it has one. Throws Error.
-void add_light(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);
+/// Appends the node's light to the scene, where it has one. `seen`: the file's lights that other nodes had already, of
+/// which nothing is said again. Throws Error.
+void add_light(const Gltf& gltf, const PlacedNode& placed, std::set<std::size_t>& seen, Scene& scene,
+               Warnings& warnings);
 
 }  // namespace chandelier::baker

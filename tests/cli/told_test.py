@@ -40,7 +40,7 @@ class Told(BakeTest):
 
     def test_colours_above_one(self):
         said = self.warnings_of(self.lit(color=[255, 200, 180]))
-        self.assertEqual(said, [f"{self.folder}/rig.gltf: node 0 'lamp': a light's colour is above 1, where glTF's end: it is "
+        self.assertEqual(said, [f"{self.folder}/rig.gltf: light 0: a light's colour is above 1, where glTF's end: it is "
                                 "that much brighter"])
         self.assertEqual(self.warnings_of(self.lit(color=[1, 0.5, 0])), [])
         gltf = triangle()
@@ -48,6 +48,12 @@ class Told(BakeTest):
         said = self.warnings_of(self.write("a.gltf", gltf))
         self.assertEqual(len(said), 1)
         self.assertIn("material 0: breaks glTF: its emissiveFactor is above 1", said[0])
+
+    def test_a_light_of_many_nodes_once(self):
+        gltf = json.loads(self.lit(range=0, color=[2, 2, 2]).read_text())
+        gltf["nodes"] += [gltf["nodes"][0]] * 49
+        gltf["scenes"] = [{"nodes": list(range(len(gltf["nodes"])))}]
+        self.assertEqual([line.split(": ")[1] for line in self.warnings_of(self.write("many.gltf", gltf))], ["light 0", "light 0"])
 
     def test_misspelt_keys(self):
         for spoil, says in ((lambda g: g.update({"node": g.pop("nodes")}), "glTF: unknown key is ignored (node, is it nodes?)"),
