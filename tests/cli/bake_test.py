@@ -62,7 +62,7 @@ def rig():
         "asset": {"version": "2.0"},
         "extensionsUsed": ["KHR_lights_punctual"],
         "extensions": {"KHR_lights_punctual": {"lights": [light]}},
-        "nodes": [{"name": "lamp", "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "nodes": [{"name": "lamp", "translation": [0.25, 0.25, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
     }
 
 
