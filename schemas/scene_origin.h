@@ -11,8 +11,8 @@ namespace chandelier::pack {
 /// Up to here floats are at most 0.06 mm apart.
 constexpr double near_origin_m = 512.0;
 
-/// The middle of a box in whole metres, along each axis along which that is far and the box does not reach 0: coordinates
-/// become half as large at least. Else 0.
+/// The middle of a box in whole metres, along each axis along which that is far and the box does not reach 0:
+/// coordinates become half as large at least. Else 0.
 inline glm::dvec3 scene_origin(const glm::dvec3& low, const glm::dvec3& high) {
   glm::dvec3 origin(0.0);
   for (int axis = 0; axis < 3; ++axis) {
