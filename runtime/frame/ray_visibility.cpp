@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/ray_visibility.h"
 
+#include <volk.h>
+
 #include <cstring>
 
 #include "octahedral.h"
@@ -13,16 +15,18 @@ gpu::Buffer make_surface_readback(const gpu::Device& device, uint32_t width, uin
                           gpu::Memory::readback);
 }
 
-void record_read_surfaces(VkCommandBuffer cmd, const Targets& targets, const gpu::Buffer& readback) {
+void record_read_surfaces(gpu::Commands cmd, const Targets& targets, const gpu::Buffer& readback) {
   VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                          .imageExtent = {targets.width, targets.height, 1}};
   gpu::image_barrier(cmd, targets.surface, use::sampled, use::copied);
-  vkCmdCopyImageToBuffer(cmd, targets.surface.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1, &copy);
+  cmd->vkCmdCopyImageToBuffer(cmd, targets.surface.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1,
+                              &copy);
   gpu::image_barrier(cmd, targets.surface, use::copied, use::sampled);
   copy.imageSubresource.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
   copy.bufferOffset = VkDeviceSize{16} * targets.width * targets.height;
   gpu::image_barrier(cmd, targets.depth, use::sampled, use::copied);
-  vkCmdCopyImageToBuffer(cmd, targets.depth.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1, &copy);
+  cmd->vkCmdCopyImageToBuffer(cmd, targets.depth.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1,
+                              &copy);
   gpu::image_barrier(cmd, targets.depth, use::copied, use::sampled);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);

@@ -10,7 +10,7 @@ namespace chandelier {
 /// Room for record_read_surfaces().
 gpu::Buffer make_surface_readback(const gpu::Device& device, uint32_t width, uint32_t height);
 /// Copies depth and surface, which must be ready to be sampled and are so again afterwards.
-void record_read_surfaces(VkCommandBuffer cmd, const Targets& targets, const gpu::Buffer& readback);
+void record_read_surfaces(gpu::Commands cmd, const Targets& targets, const gpu::Buffer& readback);
 /// One point a pixel, rows from the top, where shading has them too.
 std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const frame::ViewConstants& view);
 

@@ -2,6 +2,8 @@
 // A frame: its stages in order, barriers in sight.
 #include "frame/renderer.h"
 
+#include <volk.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -31,7 +33,7 @@ struct Streamed {
   gpu::Buffer device;
 
   template <typename T>
-  void write(const gpu::Device& on, VkCommandBuffer cmd, std::span<const T> records) {
+  void write(const gpu::Device& on, gpu::Commands cmd, std::span<const T> records) {
     if (device.size_bytes < records.size_bytes() || !device.handle) {
       staging = gpu::make_buffer(on, records.size_bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::upload);
       device =
@@ -41,7 +43,7 @@ struct Streamed {
     if (records.empty()) return;
     std::memcpy(staging.mapped, records.data(), records.size_bytes());
     const VkBufferCopy region{.size = records.size_bytes()};
-    vkCmdCopyBuffer(cmd, staging.handle, device.handle, 1, &region);
+    cmd->vkCmdCopyBuffer(cmd, staging.handle, device.handle, 1, &region);
   }
 };
 
@@ -94,11 +96,11 @@ struct Renderer::Impl {
 
   FramePlan plan(const RenderSettings& settings);
   void make_room(const RenderSettings& settings, const FramePlan& plan);
-  void record_uploads(VkCommandBuffer cmd, const FramePlan& plan);
-  void record_start(VkCommandBuffer cmd, const FramePlan& plan);
-  void record_shadow_maps(VkCommandBuffer cmd, const FramePlan& plan, uint32_t round);
-  void record_light(VkCommandBuffer cmd, const FramePlan& plan, const Round& round);
-  void record_end(VkCommandBuffer cmd, const RenderSettings& settings);
+  void record_uploads(gpu::Commands cmd, const FramePlan& plan);
+  void record_start(gpu::Commands cmd, const FramePlan& plan);
+  void record_shadow_maps(gpu::Commands cmd, const FramePlan& plan, uint32_t round);
+  void record_light(gpu::Commands cmd, const FramePlan& plan, const Round& round);
+  void record_end(gpu::Commands cmd, const RenderSettings& settings);
   void draw(const RenderSettings& settings, const FramePlan& plan);
   void draw_by_rays(const RenderSettings& settings, const FramePlan& plan);
   FrameStats read_stats(const RenderSettings& settings, const FramePlan& plan);
@@ -141,8 +143,7 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
     store = {};
     store = make_cube_array(device, settings.recipe.face_size_px, cubes);
     // A frame without shadow maps binds the store all the same.
-    gpu::run_once(device,
-                  [&](VkCommandBuffer cmd) { gpu::image_barrier(cmd, store.depth, use::nothing, use::sampled); });
+    gpu::run_once(device, [&](gpu::Commands cmd) { gpu::image_barrier(cmd, store.depth, use::nothing, use::sampled); });
   }
   const uint64_t draws = uint64_t{views_at_once} * scene.batch_instance_count;
   if (shadow_draws.capacity < draws || !shadow_draws.draws.handle) shadow_draws = make_draw_lists(device, scene, draws);
@@ -156,21 +157,21 @@ void Renderer::Impl::make_room(const RenderSettings& settings, const FramePlan& 
   }
 }
 
-void Renderer::Impl::record_uploads(VkCommandBuffer cmd, const FramePlan& plan) {
+void Renderer::Impl::record_uploads(gpu::Commands cmd, const FramePlan& plan) {
   view.write<frame::ViewConstants>(device, cmd, {&plan.view, 1});
   std::vector<frame::FrameLight> all_lights = plan.list.lights;
   all_lights.insert(all_lights.end(), plan.list.shadowless.begin(), plan.list.shadowless.end());
   lights.write<frame::FrameLight>(device, cmd, all_lights);
   maps.write<frame::ShadowMap>(device, cmd, plan.list.maps);
   views.write<frame::ShadowView>(device, cmd, plan.views);
-  vkCmdFillBuffer(cmd, counters.handle, 0, VK_WHOLE_SIZE, 0);
+  cmd->vkCmdFillBuffer(cmd, counters.handle, 0, VK_WHOLE_SIZE, 0);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 }
 
 // What the camera sees, and which lights reach it.
-void Renderer::Impl::record_start(VkCommandBuffer cmd, const FramePlan& plan) {
+void Renderer::Impl::record_start(gpu::Commands cmd, const FramePlan& plan) {
   timers.start_frame(cmd, static_cast<uint32_t>(4 * plan.rounds.size() + 3));
   record_uploads(cmd, plan);
   timers.add_cpu("select", plan.select_ms);
@@ -197,7 +198,7 @@ void Renderer::Impl::record_start(VkCommandBuffer cmd, const FramePlan& plan) {
 }
 
 // Draws the shadow maps of a round.
-void Renderer::Impl::record_shadow_maps(VkCommandBuffer cmd, const FramePlan& plan, uint32_t number) {
+void Renderer::Impl::record_shadow_maps(gpu::Commands cmd, const FramePlan& plan, uint32_t number) {
   const Round& round = plan.rounds[number];
   timers.begin(cmd, "cull");
   record_cull(cmd, device, plan.recipe.cull == Cull::none ? cull.none : cull.light_frustum, scene,
@@ -217,7 +218,7 @@ void Renderer::Impl::record_shadow_maps(VkCommandBuffer cmd, const FramePlan& pl
 }
 
 // Adds the light of a round's lights. Where visibility comes from rays it is in `visibility` already.
-void Renderer::Impl::record_light(VkCommandBuffer cmd, const FramePlan& plan, const Round& round) {
+void Renderer::Impl::record_light(gpu::Commands cmd, const FramePlan& plan, const Round& round) {
   ShadeInput input{.view = view.device,
                    .lights = lights.device,
                    .maps = maps.device,
@@ -238,7 +239,7 @@ void Renderer::Impl::record_light(VkCommandBuffer cmd, const FramePlan& plan, co
 }
 
 // The picture as shown, and the counters.
-void Renderer::Impl::record_end(VkCommandBuffer cmd, const RenderSettings& settings) {
+void Renderer::Impl::record_end(gpu::Commands cmd, const RenderSettings& settings) {
   timers.begin(cmd, "tone-map");
   record_tone_map(cmd, tone, settings.exposure_ev, luminance_sums, targets);
   timers.end(cmd);
@@ -246,15 +247,15 @@ void Renderer::Impl::record_end(VkCommandBuffer cmd, const RenderSettings& setti
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
   const VkBufferCopy counts{.size = counters.size_bytes};
-  vkCmdCopyBuffer(cmd, counters.handle, counters_readback.handle, 1, &counts);
+  cmd->vkCmdCopyBuffer(cmd, counters.handle, counters_readback.handle, 1, &counts);
   const VkBufferCopy exposure{.size = sizeof(frame::LuminanceSum)};
-  vkCmdCopyBuffer(cmd, luminance_sums.handle, exposure_readback.handle, 1, &exposure);
+  cmd->vkCmdCopyBuffer(cmd, luminance_sums.handle, exposure_readback.handle, 1, &exposure);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
 
 void Renderer::Impl::draw(const RenderSettings& settings, const FramePlan& plan) {
-  gpu::run_once(device, [&](VkCommandBuffer cmd) {
+  gpu::run_once(device, [&](gpu::Commands cmd) {
     record_start(cmd, plan);
     for (uint32_t round = 0; round < plan.rounds.size(); ++round) {
       if (plan.rounds[round].map_count > 0) record_shadow_maps(cmd, plan, round);
@@ -267,7 +268,7 @@ void Renderer::Impl::draw(const RenderSettings& settings, const FramePlan& plan)
 // The caller's rays stand between the device's work: first what the camera sees, then each round's light.
 void Renderer::Impl::draw_by_rays(const RenderSettings& settings, const FramePlan& plan) {
   const gpu::Buffer readback = make_surface_readback(device, settings.width, settings.height);
-  gpu::run_once(device, [&](VkCommandBuffer cmd) {
+  gpu::run_once(device, [&](gpu::Commands cmd) {
     record_start(cmd, plan);
     record_read_surfaces(cmd, targets, readback);
   });
@@ -277,9 +278,9 @@ void Renderer::Impl::draw_by_rays(const RenderSettings& settings, const FramePla
     const auto start = Clock::now();
     fill_visibility(plan, round, points, settings.width, settings.visibility, bytes);
     timers.add_cpu("filter", ms_since(start));
-    gpu::run_once(device, [&](VkCommandBuffer cmd) { record_light(cmd, plan, round); });
+    gpu::run_once(device, [&](gpu::Commands cmd) { record_light(cmd, plan, round); });
   }
-  gpu::run_once(device, [&](VkCommandBuffer cmd) { record_end(cmd, settings); });
+  gpu::run_once(device, [&](gpu::Commands cmd) { record_end(cmd, settings); });
 }
 
 FrameStats Renderer::Impl::read_stats(const RenderSettings& settings, const FramePlan& plan) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame/targets.h"
 
+#include <volk.h>
+
 namespace chandelier {
 
 Targets make_targets(const gpu::Device& device, uint32_t width, uint32_t height) {
@@ -26,11 +28,11 @@ gpu::Owned<VkSampler> make_texel_sampler(const gpu::Device& device) {
                                     .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
 }
 
-void set_viewport(VkCommandBuffer cmd, uint32_t width, uint32_t height) {
+void set_viewport(gpu::Commands cmd, uint32_t width, uint32_t height) {
   const VkViewport viewport{0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height), 0.0f, 1.0f};
   const VkRect2D scissor{{0, 0}, {width, height}};
-  vkCmdSetViewport(cmd, 0, 1, &viewport);
-  vkCmdSetScissor(cmd, 0, 1, &scissor);
+  cmd->vkCmdSetViewport(cmd, 0, 1, &viewport);
+  cmd->vkCmdSetScissor(cmd, 0, 1, &scissor);
 }
 
 }  // namespace chandelier

@@ -40,6 +40,6 @@ inline constexpr gpu::ImageUse copied{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_P
 }  // namespace use
 
 /// Covers an image `width` by `height` with viewport and scissor.
-void set_viewport(VkCommandBuffer cmd, uint32_t width, uint32_t height);
+void set_viewport(gpu::Commands cmd, uint32_t width, uint32_t height);
 
 }  // namespace chandelier

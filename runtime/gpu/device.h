@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Vulkan 1.3 device with one queue, and what the validation layer said about its use.
+// A Vulkan 1.3 device with one queue: made by the runtime, or a host's own. What the validation layer said about its
+// use.
 #pragma once
 
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include <cstdint>
 #include <memory>
@@ -10,7 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "gpu/loader.h"
+
 namespace chandelier::gpu {
+
+class Allocator;
 
 /// A Vulkan call failed, or no device fits. what() is one line.
 struct Error : std::runtime_error {
@@ -25,6 +30,21 @@ struct DeviceOptions {
   bool validation = false;  // Khronos' layer with synchronization validation; Error where it is not installed
   std::vector<const char*> instance_extensions;  // what a window system needs
   bool swapchain = false;
+  bool bounds = true;  // robustBufferAccess: reads and writes outside a buffer stay without effect
+};
+
+/// A host's own device, to be used by the runtime. All of it must outlive the Device made from it, and the device must
+/// have been made with what requirements.h asks for.
+struct HostDevice {
+  PFN_vkGetInstanceProcAddr loader = nullptr;
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;  // of a family that draws, computes and times. Used by the calling thread only in
+  uint32_t queue_family = 0;       // constructors, Renderer::draw() and read_back(); never in Renderer::record()
+  // Optional features that the host has switched on.
+  bool texture_compression_bc = false;
+  bool sampler_anisotropy = false;
 };
 
 struct DeviceName {
@@ -35,23 +55,33 @@ struct DeviceName {
 /// Every Vulkan device of this machine. Throws Error where there is no Vulkan loader.
 std::vector<DeviceName> list_devices();
 
-/// volk keeps one table of device functions for the whole program: only one Device may live at a time.
 class Device {
  public:
   explicit Device(const DeviceOptions& options);
+  /// Throws Error where the host's device lacks what is needed.
+  explicit Device(const HostDevice& host);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
+
+  /// The device's functions: `device->vkCreateBuffer(device.handle, …)`. Include volk.h to call them.
+  const VolkDeviceTable* operator->() const { return functions_.get(); }
+  const VolkDeviceTable* functions() const { return functions_.get(); }
+  const InstanceFunctions& instance_functions() const { return instance_functions_; }
+  Allocator& allocator() const { return *allocator_; }
 
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice handle = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   uint32_t queue_family = 0;
-  VkCommandPool command_pool = VK_NULL_HANDLE;
+  uint32_t timestamp_bits = 0;                  // valid bits of the queue's timestamps
+  VkCommandPool command_pool = VK_NULL_HANDLE;  // of the runtime's own commands
   VkPhysicalDeviceLimits limits{};
   VkPhysicalDeviceMemoryProperties memory{};
-  bool samples_bc = false;  // block-compressed textures
+  bool samples_bc = false;           // block-compressed textures
+  bool samples_anisotropic = false;  // textures on slanted surfaces
+  bool is_software = false;          // runs on the CPU
   std::string name;
   std::string driver;
 
@@ -61,8 +91,29 @@ class Device {
   std::shared_ptr<const std::vector<std::string>> validation_log() const { return validation_messages_; }
 
  private:
+  void make_device(const DeviceOptions& options);
+  void read_properties();
+  void start();
+  void end();
+
+  InstanceFunctions instance_functions_;
+  DeviceFunctions functions_;
+  std::unique_ptr<Allocator> allocator_;
+  bool owns_ = false;  // instance and device
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   std::shared_ptr<std::vector<std::string>> validation_messages_ = std::make_shared<std::vector<std::string>>();
+};
+
+/// A command buffer that is being recorded, with the functions of its device: `cmd->vkCmdDispatch(cmd, …)`.
+class Commands {
+ public:
+  Commands(const Device& device, VkCommandBuffer handle) : handle_(handle), functions_(device.functions()) {}
+  operator VkCommandBuffer() const { return handle_; }  // NOLINT: stands for the handle in Vulkan calls
+  const VolkDeviceTable* operator->() const { return functions_; }
+
+ private:
+  VkCommandBuffer handle_;
+  const VolkDeviceTable* functions_;
 };
 
 }  // namespace chandelier::gpu

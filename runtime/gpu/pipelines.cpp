@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/pipelines.h"
 
+#include <volk.h>
+
 #include <algorithm>
+#include <array>
 
 namespace chandelier::gpu {
 namespace {
@@ -10,8 +13,8 @@ Owned<VkShaderModule> make_module(const Device& device, std::span<const uint32_t
   const VkShaderModuleCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
   VkShaderModule module = VK_NULL_HANDLE;
-  check(vkCreateShaderModule(device.handle, &info, nullptr, &module), "vkCreateShaderModule");
-  return {device.handle, module, vkDestroyShaderModule};
+  check(device->vkCreateShaderModule(device.handle, &info, nullptr, &module), "vkCreateShaderModule");
+  return {device.handle, module, device->vkDestroyShaderModule};
 }
 
 void make_layout(const Device& device, const LayoutInfo& info, Pipeline& pipeline) {
@@ -26,8 +29,8 @@ void make_layout(const Device& device, const LayoutInfo& info, Pipeline& pipelin
                                                  .bindingCount = static_cast<uint32_t>(bindings.size()),
                                                  .pBindings = bindings.data()};
   VkDescriptorSetLayout set = VK_NULL_HANDLE;
-  check(vkCreateDescriptorSetLayout(device.handle, &set_info, nullptr, &set), "vkCreateDescriptorSetLayout");
-  pipeline.set_layout = {device.handle, set, vkDestroyDescriptorSetLayout};
+  check(device->vkCreateDescriptorSetLayout(device.handle, &set_info, nullptr, &set), "vkCreateDescriptorSetLayout");
+  pipeline.set_layout = {device.handle, set, device->vkDestroyDescriptorSetLayout};
 
   std::vector<VkDescriptorSetLayout> sets{set};
   sets.insert(sets.end(), info.more_sets.begin(), info.more_sets.end());
@@ -38,8 +41,8 @@ void make_layout(const Device& device, const LayoutInfo& info, Pipeline& pipelin
                                                .pushConstantRangeCount = info.push_bytes ? 1u : 0u,
                                                .pPushConstantRanges = &range};
   VkPipelineLayout layout = VK_NULL_HANDLE;
-  check(vkCreatePipelineLayout(device.handle, &layout_info, nullptr, &layout), "vkCreatePipelineLayout");
-  pipeline.layout = {device.handle, layout, vkDestroyPipelineLayout};
+  check(device->vkCreatePipelineLayout(device.handle, &layout_info, nullptr, &layout), "vkCreatePipelineLayout");
+  pipeline.layout = {device.handle, layout, device->vkDestroyPipelineLayout};
 }
 
 struct Specialization {
@@ -84,9 +87,9 @@ Pipeline make_compute_pipeline(const Device& device, const LayoutInfo& layout, s
                                          .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization),
                                          .layout = pipeline.layout};
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
+  check(device->vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
         "vkCreateComputePipelines");
-  pipeline.handle = {device.handle, handle, vkDestroyPipeline};
+  pipeline.handle = {device.handle, handle, device->vkDestroyPipeline};
   return pipeline;
 }
 
@@ -161,33 +164,40 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
                                           .pDynamicState = &dynamic,
                                           .layout = pipeline.layout};
   VkPipeline handle = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
+  check(device->vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
         "vkCreateGraphicsPipelines");
-  pipeline.handle = {device.handle, handle, vkDestroyPipeline};
+  pipeline.handle = {device.handle, handle, device->vkDestroyPipeline};
   return pipeline;
 }
 
-void bind(VkCommandBuffer cmd, const Pipeline& pipeline, std::initializer_list<Bound> resources) {
-  std::vector<VkWriteDescriptorSet> writes;
-  for (const Bound& bound : resources)
-    writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                      .dstBinding = static_cast<uint32_t>(writes.size()),
-                      .descriptorCount = 1,
-                      .descriptorType = bound.type,
-                      .pImageInfo = &bound.image,
-                      .pBufferInfo = &bound.buffer});
-  vkCmdBindPipeline(cmd, pipeline.bind_point, pipeline.handle);
-  vkCmdPushDescriptorSetKHR(cmd, pipeline.bind_point, pipeline.layout, 0, static_cast<uint32_t>(writes.size()),
-                            writes.data());
+void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Bound> resources) {
+  std::array<VkWriteDescriptorSet, 32> writes;  // the least that maxPushDescriptors may be
+  uint32_t count = 0;
+  for (const Bound& bound : resources) {
+    writes.at(count) = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                        .dstBinding = count,
+                        .descriptorCount = 1,
+                        .descriptorType = bound.type,
+                        .pImageInfo = &bound.image,
+                        .pBufferInfo = &bound.buffer};
+    ++count;
+  }
+  cmd->vkCmdBindPipeline(cmd, pipeline.bind_point, pipeline.handle);
+  cmd->vkCmdPushDescriptorSetKHR(cmd, pipeline.bind_point, pipeline.layout, 0, count, writes.data());
 }
 
-void dispatch(VkCommandBuffer cmd, const Device& device, uint64_t threads, uint32_t group) {
+void push_bytes(Commands cmd, const Pipeline& pipeline, std::span<const std::byte> bytes) {
+  cmd->vkCmdPushConstants(cmd, pipeline.layout, VK_SHADER_STAGE_ALL, 0, static_cast<uint32_t>(bytes.size()),
+                          bytes.data());
+}
+
+void dispatch(Commands cmd, const Device& device, uint64_t threads, uint32_t group) {
   const uint64_t groups = (threads + group - 1) / group;
   if (groups == 0) return;
   const uint64_t x = std::min<uint64_t>(groups, device.limits.maxComputeWorkGroupCount[0]);
   const uint64_t y = (groups + x - 1) / x;
   if (y > device.limits.maxComputeWorkGroupCount[1]) throw Error("a dispatch is too large for this device");
-  vkCmdDispatch(cmd, static_cast<uint32_t>(x), static_cast<uint32_t>(y), 1);
+  cmd->vkCmdDispatch(cmd, static_cast<uint32_t>(x), static_cast<uint32_t>(y), 1);
 }
 
 }  // namespace chandelier::gpu

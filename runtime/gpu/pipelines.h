@@ -58,14 +58,15 @@ struct GraphicsInfo {
 Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& info);
 
 /// Binds the pipeline and its set 0.
-void bind(VkCommandBuffer cmd, const Pipeline& pipeline, std::initializer_list<Bound> resources);
+void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Bound> resources);
 
+void push_bytes(Commands cmd, const Pipeline& pipeline, std::span<const std::byte> bytes);
 template <typename Constants>
-void push_constants(VkCommandBuffer cmd, const Pipeline& pipeline, const Constants& constants) {
-  vkCmdPushConstants(cmd, pipeline.layout, VK_SHADER_STAGE_ALL, 0, sizeof constants, &constants);
+void push_constants(Commands cmd, const Pipeline& pipeline, const Constants& constants) {
+  push_bytes(cmd, pipeline, std::as_bytes(std::span(&constants, 1)));
 }
 
 /// Enough groups of `group` threads for `threads`, spread over y where x alone cannot hold them.
-void dispatch(VkCommandBuffer cmd, const Device& device, uint64_t threads, uint32_t group);
+void dispatch(Commands cmd, const Device& device, uint64_t threads, uint32_t group);
 
 }  // namespace chandelier::gpu

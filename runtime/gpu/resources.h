@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "gpu/allocator.h"
 #include "gpu/device.h"
 
 namespace chandelier::gpu {
@@ -39,12 +40,9 @@ class Owned {
   Destroy destroy_ = nullptr;
 };
 
-/// Where a buffer lives: `device` for what only shaders touch, `upload` and `readback` are mapped.
-enum class Memory { device, upload, readback };
-
 // Members are destroyed from the last to the first: a buffer before its memory, a view before its image.
 struct Buffer {
-  Owned<VkDeviceMemory> memory;
+  Allocation memory;
   Owned<VkBuffer> handle;
   VkDeviceSize size_bytes = 0;
   std::byte* mapped = nullptr;  // coherent; null for Memory::device
@@ -65,7 +63,7 @@ struct ImageInfo {
 };
 
 struct Image {
-  Owned<VkDeviceMemory> memory;
+  Allocation memory;
   Owned<VkImage> handle;
   Owned<VkImageView> view;  // all levels and layers
   ImageInfo info;
@@ -80,13 +78,13 @@ Owned<VkImageView> make_view(const Device& device, const Image& image, VkImageVi
 Owned<VkSampler> make_sampler(const Device& device, const VkSamplerCreateInfo& info);
 
 /// Records commands, submits them and waits until they are done.
-void run_once(const Device& device, const std::function<void(VkCommandBuffer)>& record);
+void run_once(const Device& device, const std::function<void(Commands)>& record);
 
 /// A new device buffer with these bytes.
 Buffer upload_buffer(const Device& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
 
 /// Everything before waits in nothing after `from` writes are visible to `to`; for buffers and images alike.
-void memory_barrier(VkCommandBuffer cmd, VkPipelineStageFlags2 from_stage, VkAccessFlags2 from_access,
+void memory_barrier(Commands cmd, VkPipelineStageFlags2 from_stage, VkAccessFlags2 from_access,
                     VkPipelineStageFlags2 to_stage, VkAccessFlags2 to_access);
 
 struct ImageUse {
@@ -95,6 +93,6 @@ struct ImageUse {
   VkAccessFlags2 access;
 };
 /// Moves a whole image from one use to the next.
-void image_barrier(VkCommandBuffer cmd, const Image& image, const ImageUse& from, const ImageUse& to);
+void image_barrier(Commands cmd, const Image& image, const ImageUse& from, const ImageUse& to);
 
 }  // namespace chandelier::gpu

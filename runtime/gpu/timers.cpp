@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/timers.h"
 
+#include <volk.h>
+
 namespace chandelier::gpu {
 Timers::Timers(const Device& device) : device_(&device), ms_per_tick_(device.limits.timestampPeriod * 1e-6) {}
 
-void Timers::start_frame(VkCommandBuffer cmd, uint32_t spans) {
+void Timers::start_frame(Commands cmd, uint32_t spans) {
   if (room_ < 2 * spans) {
     room_ = 2 * spans;
     const VkQueryPoolCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, .queryType = VK_QUERY_TYPE_TIMESTAMP, .queryCount = room_};
     VkQueryPool pool = VK_NULL_HANDLE;
-    check(vkCreateQueryPool(device_->handle, &info, nullptr, &pool), "vkCreateQueryPool");
-    pool_ = {device_->handle, pool, vkDestroyQueryPool};
+    check((*device_)->vkCreateQueryPool(device_->handle, &info, nullptr, &pool), "vkCreateQueryPool");
+    pool_ = {device_->handle, pool, (*device_)->vkDestroyQueryPool};
   }
   stages_.clear();
   spans_.clear();
   used_ = 0;
-  vkCmdResetQueryPool(cmd, pool_, 0, room_);
+  cmd->vkCmdResetQueryPool(cmd, pool_, 0, room_);
 }
 
 size_t Timers::stage_number(const char* name) {
@@ -26,19 +28,19 @@ size_t Timers::stage_number(const char* name) {
   return stages_.size() - 1;
 }
 
-void Timers::begin(VkCommandBuffer cmd, const char* stage) {
+void Timers::begin(Commands cmd, const char* stage) {
   if (used_ + 2 > room_) throw Error("more timed spans than announced");
   spans_.push_back({stage_number(stage), used_});
-  vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, used_);
+  cmd->vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, used_);
   used_ += 2;
   begun_ = std::chrono::steady_clock::now();
 }
 
-void Timers::end(VkCommandBuffer cmd) {
+void Timers::end(Commands cmd) {
   const Span& span = spans_.back();
   stages_[span.stage].cpu_ms +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun_).count();
-  vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, span.first_query + 1);
+  cmd->vkCmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, span.first_query + 1);
 }
 
 void Timers::add_cpu(const char* stage, double cpu_ms) {
@@ -48,8 +50,8 @@ void Timers::add_cpu(const char* stage, double cpu_ms) {
 std::vector<Timers::Stage> Timers::read() {
   std::vector<uint64_t> ticks(used_);
   if (used_)
-    check(vkGetQueryPoolResults(device_->handle, pool_, 0, used_, ticks.size() * 8, ticks.data(), 8,
-                                VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+    check((*device_)->vkGetQueryPoolResults(device_->handle, pool_, 0, used_, ticks.size() * 8, ticks.data(), 8,
+                                            VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
           "vkGetQueryPoolResults");
   for (const Span& span : spans_)
     stages_[span.stage].gpu_ms +=

@@ -16,9 +16,9 @@ class Timers {
   explicit Timers(const Device& device);
 
   /// Makes room for `spans` begin-end pairs.
-  void start_frame(VkCommandBuffer cmd, uint32_t spans);
-  void begin(VkCommandBuffer cmd, const char* stage);
-  void end(VkCommandBuffer cmd);
+  void start_frame(Commands cmd, uint32_t spans);
+  void begin(Commands cmd, const char* stage);
+  void end(Commands cmd);
   /// Time that a stage took on the CPU alone.
   void add_cpu(const char* stage, double cpu_ms);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lookup/tiles.h"
 
+#include <volk.h>
+
 #include <algorithm>
 
 #include "shaders/tiles_comp.h"
@@ -28,7 +30,7 @@ void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height,
     lists.words = gpu::make_buffer(device, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::device);
 }
 
-void record_tiles(VkCommandBuffer cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,
+void record_tiles(gpu::Commands cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,
                   size_t light_count, const Targets& targets, const TileLists& lists) {
   gpu::bind(cmd, tiles.pipeline,
             {gpu::storage(view), gpu::storage(lights), gpu::sampled(targets.depth.view, tiles.texel_sampler),
@@ -36,7 +38,7 @@ void record_tiles(VkCommandBuffer cmd, const TilePipeline& tiles, const gpu::Buf
   gpu::push_constants(
       cmd, tiles.pipeline,
       frame::TileConstants{.light_count = static_cast<uint32_t>(light_count), .words_per_tile = lists.words_per_tile});
-  vkCmdDispatch(cmd, lists.tiles_x, lists.tiles_y, 1);
+  cmd->vkCmdDispatch(cmd, lists.tiles_x, lists.tiles_y, 1);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
 }

@@ -24,7 +24,7 @@ struct TileLists {
 void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, TileLists& lists);
 
 /// Reads depth, which must be ready to be sampled; leaves `lists` ready for compute shaders.
-void record_tiles(VkCommandBuffer cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,
+void record_tiles(gpu::Commands cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,
                   size_t light_count, const Targets& targets, const TileLists& lists);
 
 }  // namespace chandelier

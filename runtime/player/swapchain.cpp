@@ -2,12 +2,14 @@
 // Shows a picture in a window's surface. One picture is in flight: drawing it takes far longer than showing it.
 #include "player/swapchain.h"
 
+#include <volk.h>
+
 #include <algorithm>
 
 namespace chandelier::player {
 namespace {
 
-void image_barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to,
+void image_barrier(gpu::Commands commands, VkImage image, VkImageLayout from, VkImageLayout to,
                    VkAccessFlags2 src_access, VkAccessFlags2 dst_access, VkPipelineStageFlags2 dst_stage) {
   VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
@@ -23,13 +25,13 @@ void image_barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, 
   VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
   dependency.imageMemoryBarrierCount = 1;
   dependency.pImageMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &dependency);
+  commands->vkCmdPipelineBarrier2(commands, &dependency);
 }
 
-VkSemaphore make_semaphore(VkDevice device) {
+VkSemaphore make_semaphore(const gpu::Device& device) {
   const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
   VkSemaphore semaphore = VK_NULL_HANDLE;
-  gpu::check(vkCreateSemaphore(device, &info, nullptr, &semaphore), "vkCreateSemaphore");
+  gpu::check(device->vkCreateSemaphore(device.handle, &info, nullptr, &semaphore), "vkCreateSemaphore");
   return semaphore;
 }
 
@@ -38,14 +40,14 @@ VkSemaphore make_semaphore(VkDevice device) {
 Swapchain::Swapchain(const gpu::Device& device, VkSurfaceKHR surface) : device_(device), surface_(surface) {
   try {
     choose_format();
-    acquired_ = make_semaphore(device_.handle);
+    acquired_ = make_semaphore(device_);
     const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    gpu::check(vkCreateFence(device_.handle, &fence, nullptr, &done_), "vkCreateFence");
+    gpu::check(device_->vkCreateFence(device_.handle, &fence, nullptr, &done_), "vkCreateFence");
     VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
     allocate.commandPool = device_.command_pool;
     allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     allocate.commandBufferCount = 1;
-    gpu::check(vkAllocateCommandBuffers(device_.handle, &allocate, &commands_), "vkAllocateCommandBuffers");
+    gpu::check(device_->vkAllocateCommandBuffers(device_.handle, &allocate, &commands_), "vkAllocateCommandBuffers");
   } catch (...) {
     destroy();
     throw;
@@ -57,24 +59,28 @@ Swapchain::~Swapchain() {
 }
 
 void Swapchain::destroy() {
-  vkDeviceWaitIdle(device_.handle);
-  for (VkSemaphore semaphore : drawn_) vkDestroySemaphore(device_.handle, semaphore, nullptr);
-  vkDestroySwapchainKHR(device_.handle, swapchain_, nullptr);
-  if (commands_ != VK_NULL_HANDLE) vkFreeCommandBuffers(device_.handle, device_.command_pool, 1, &commands_);
-  vkDestroyFence(device_.handle, done_, nullptr);
-  vkDestroySemaphore(device_.handle, acquired_, nullptr);
-  vkDestroySurfaceKHR(device_.instance, surface_, nullptr);
+  device_->vkDeviceWaitIdle(device_.handle);
+  for (VkSemaphore semaphore : drawn_) device_->vkDestroySemaphore(device_.handle, semaphore, nullptr);
+  device_->vkDestroySwapchainKHR(device_.handle, swapchain_, nullptr);
+  if (commands_ != VK_NULL_HANDLE) device_->vkFreeCommandBuffers(device_.handle, device_.command_pool, 1, &commands_);
+  device_->vkDestroyFence(device_.handle, done_, nullptr);
+  device_->vkDestroySemaphore(device_.handle, acquired_, nullptr);
+  device_.instance_functions().vkDestroySurfaceKHR(device_.instance, surface_, nullptr);
 }
 
 void Swapchain::choose_format() {
   VkBool32 presents = VK_FALSE;
-  gpu::check(vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical, device_.queue_family, surface_, &presents),
+  gpu::check(device_.instance_functions().vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical, device_.queue_family,
+                                                                               surface_, &presents),
              "vkGetPhysicalDeviceSurfaceSupportKHR");
   if (!presents) throw gpu::Error("the device cannot show pictures in this window (" + device_.name + ")");
   uint32_t count = 0;
-  gpu::check(vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical, surface_, &count, nullptr), "surface formats");
+  gpu::check(
+      device_.instance_functions().vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical, surface_, &count, nullptr),
+      "surface formats");
   std::vector<VkSurfaceFormatKHR> formats(count);
-  gpu::check(vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical, surface_, &count, formats.data()),
+  gpu::check(device_.instance_functions().vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical, surface_, &count,
+                                                                               formats.data()),
              "surface formats");
   // The picture holds sRGB values already: a blit into an _SRGB format would encode them twice.
   const auto fits = [](const VkSurfaceFormatKHR& f) {
@@ -88,7 +94,8 @@ void Swapchain::choose_format() {
 
 bool Swapchain::make(VkExtent2D window) {
   VkSurfaceCapabilitiesKHR can{};
-  gpu::check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical, surface_, &can), "surface capabilities");
+  gpu::check(device_.instance_functions().vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical, surface_, &can),
+             "surface capabilities");
   if ((can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT) == 0)
     throw gpu::Error("the window's images cannot be copied to (" + device_.name + ")");
   extent_ = can.currentExtent;
@@ -113,18 +120,19 @@ bool Swapchain::make(VkExtent2D window) {
   info.clipped = VK_TRUE;
   info.oldSwapchain = swapchain_;
   VkSwapchainKHR fresh = VK_NULL_HANDLE;
-  gpu::check(vkCreateSwapchainKHR(device_.handle, &info, nullptr, &fresh), "vkCreateSwapchainKHR");
-  gpu::check(vkDeviceWaitIdle(device_.handle), "vkDeviceWaitIdle");
-  vkDestroySwapchainKHR(device_.handle, swapchain_, nullptr);
+  gpu::check(device_->vkCreateSwapchainKHR(device_.handle, &info, nullptr, &fresh), "vkCreateSwapchainKHR");
+  gpu::check(device_->vkDeviceWaitIdle(device_.handle), "vkDeviceWaitIdle");
+  device_->vkDestroySwapchainKHR(device_.handle, swapchain_, nullptr);
   swapchain_ = fresh;
 
   uint32_t count = 0;
-  gpu::check(vkGetSwapchainImagesKHR(device_.handle, swapchain_, &count, nullptr), "vkGetSwapchainImagesKHR");
+  gpu::check(device_->vkGetSwapchainImagesKHR(device_.handle, swapchain_, &count, nullptr), "vkGetSwapchainImagesKHR");
   images_.resize(count);
-  gpu::check(vkGetSwapchainImagesKHR(device_.handle, swapchain_, &count, images_.data()), "vkGetSwapchainImagesKHR");
-  for (VkSemaphore semaphore : drawn_) vkDestroySemaphore(device_.handle, semaphore, nullptr);
+  gpu::check(device_->vkGetSwapchainImagesKHR(device_.handle, swapchain_, &count, images_.data()),
+             "vkGetSwapchainImagesKHR");
+  for (VkSemaphore semaphore : drawn_) device_->vkDestroySemaphore(device_.handle, semaphore, nullptr);
   drawn_.clear();
-  for (uint32_t i = 0; i < count; ++i) drawn_.push_back(make_semaphore(device_.handle));
+  for (uint32_t i = 0; i < count; ++i) drawn_.push_back(make_semaphore(device_));
   return true;
 }
 
@@ -133,10 +141,12 @@ bool Swapchain::show(VkImage image, VkExtent2D size, VkExtent2D window) {
   uint32_t index = 0;
   VkResult acquired = VK_ERROR_OUT_OF_DATE_KHR;
   if (swapchain_ != VK_NULL_HANDLE && extent_.width == window.width && extent_.height == window.height)
-    acquired = vkAcquireNextImageKHR(device_.handle, swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &index);
+    acquired =
+        device_->vkAcquireNextImageKHR(device_.handle, swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &index);
   if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
     if (!make(window)) return false;
-    acquired = vkAcquireNextImageKHR(device_.handle, swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &index);
+    acquired =
+        device_->vkAcquireNextImageKHR(device_.handle, swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &index);
     if (acquired == VK_ERROR_OUT_OF_DATE_KHR) return false;  // resized in between: the next frame makes it anew
   }
   if (acquired != VK_SUBOPTIMAL_KHR) gpu::check(acquired, "vkAcquireNextImageKHR");
@@ -149,7 +159,7 @@ bool Swapchain::show(VkImage image, VkExtent2D size, VkExtent2D window) {
   present.swapchainCount = 1;
   present.pSwapchains = &swapchain_;
   present.pImageIndices = &index;
-  const VkResult presented = vkQueuePresentKHR(device_.queue, &present);
+  const VkResult presented = device_->vkQueuePresentKHR(device_.queue, &present);
   if (presented == VK_ERROR_OUT_OF_DATE_KHR || presented == VK_SUBOPTIMAL_KHR)
     extent_ = {};  // makes the next show() start anew
   else
@@ -158,21 +168,22 @@ bool Swapchain::show(VkImage image, VkExtent2D size, VkExtent2D window) {
 }
 
 void Swapchain::record(VkImage from, VkExtent2D size, VkImage to) {
+  const gpu::Commands commands(device_, commands_);
   VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  gpu::check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
-  image_barrier(commands_, to, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_ACCESS_2_NONE,
+  gpu::check(device_->vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+  image_barrier(commands, to, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_ACCESS_2_NONE,
                 VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_BLIT_BIT);
   VkImageBlit blit{};
   blit.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
   blit.srcOffsets[1] = {static_cast<int32_t>(size.width), static_cast<int32_t>(size.height), 1};
   blit.dstSubresource = blit.srcSubresource;
   blit.dstOffsets[1] = {static_cast<int32_t>(extent_.width), static_cast<int32_t>(extent_.height), 1};
-  vkCmdBlitImage(commands_, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                 &blit, VK_FILTER_LINEAR);
-  image_barrier(commands_, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
+  device_->vkCmdBlitImage(commands_, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
+                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
+  image_barrier(commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
                 VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_NONE, VK_PIPELINE_STAGE_2_NONE);
-  gpu::check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
+  gpu::check(device_->vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 
 void Swapchain::submit(uint32_t index) {
@@ -191,9 +202,9 @@ void Swapchain::submit(uint32_t index) {
   info.pCommandBufferInfos = &commands;
   info.signalSemaphoreInfoCount = 1;
   info.pSignalSemaphoreInfos = &signal;
-  gpu::check(vkResetFences(device_.handle, 1, &done_), "vkResetFences");
-  gpu::check(vkQueueSubmit2(device_.queue, 1, &info, done_), "vkQueueSubmit2");
-  gpu::check(vkWaitForFences(device_.handle, 1, &done_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  gpu::check(device_->vkResetFences(device_.handle, 1, &done_), "vkResetFences");
+  gpu::check(device_->vkQueueSubmit2(device_.queue, 1, &info, done_), "vkQueueSubmit2");
+  gpu::check(device_->vkWaitForFences(device_.handle, 1, &done_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
 }
 
 }  // namespace chandelier::player

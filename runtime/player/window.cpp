@@ -4,7 +4,6 @@
 #include "player/window.h"
 
 #include <fmt/format.h>
-#include <volk.h>
 
 #include <algorithm>
 #include <chrono>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/textures.h"
 
+#include <volk.h>
+
 #include <algorithm>
 #include <array>
 
@@ -69,10 +71,10 @@ gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std:
   gpu::Buffer staging = gpu::make_buffer(device, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::upload);
   std::copy(texels.begin(), texels.end(), staging.mapped);
   const std::vector<VkBufferImageCopy> copies = copies_of_levels(info, format);
-  gpu::run_once(device, [&](VkCommandBuffer cmd) {
+  gpu::run_once(device, [&](gpu::Commands cmd) {
     gpu::image_barrier(cmd, image, nothing_yet, copied_to);
-    vkCmdCopyBufferToImage(cmd, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                           static_cast<uint32_t>(copies.size()), copies.data());
+    cmd->vkCmdCopyBufferToImage(cmd, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                static_cast<uint32_t>(copies.size()), copies.data());
     gpu::image_barrier(cmd, image, copied_to, read_by_fragments);
   });
   return image;
@@ -125,8 +127,9 @@ void make_material_layout(const gpu::Device& device, uint32_t materials, GpuScen
                                                     .bindingCount = textures_per_material,
                                                     .pBindings = bindings.data()};
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-  gpu::check(vkCreateDescriptorSetLayout(device.handle, &layout_info, nullptr, &layout), "vkCreateDescriptorSetLayout");
-  scene.material_layout = {device.handle, layout, vkDestroyDescriptorSetLayout};
+  gpu::check(device->vkCreateDescriptorSetLayout(device.handle, &layout_info, nullptr, &layout),
+             "vkCreateDescriptorSetLayout");
+  scene.material_layout = {device.handle, layout, device->vkDestroyDescriptorSetLayout};
 
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                   std::max(1u, materials) * textures_per_material};
@@ -135,8 +138,8 @@ void make_material_layout(const gpu::Device& device, uint32_t materials, GpuScen
                                              .poolSizeCount = 1,
                                              .pPoolSizes = &size};
   VkDescriptorPool pool = VK_NULL_HANDLE;
-  gpu::check(vkCreateDescriptorPool(device.handle, &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
-  scene.material_pool = {device.handle, pool, vkDestroyDescriptorPool};
+  gpu::check(device->vkCreateDescriptorPool(device.handle, &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
+  scene.material_pool = {device.handle, pool, device->vkDestroyDescriptorPool};
 }
 
 // A texture that is absent is white: a driver may read a descriptor on a branch that is not taken.
@@ -160,7 +163,7 @@ VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& p
                                          .descriptorSetCount = 1,
                                          .pSetLayouts = scene.material_layout.address()};
   VkDescriptorSet set = VK_NULL_HANDLE;
-  gpu::check(vkAllocateDescriptorSets(device.handle, &info, &set), "vkAllocateDescriptorSets");
+  gpu::check(device->vkAllocateDescriptorSets(device.handle, &info, &set), "vkAllocateDescriptorSets");
   const auto textures = textures_of(material);
   for (uint32_t i = 0; i < textures_per_material; ++i) {
     const VkDescriptorImageInfo image = describe(pack, scene, textures[i]);
@@ -170,7 +173,7 @@ VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& p
                                      .descriptorCount = 1,
                                      .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                      .pImageInfo = &image};
-    vkUpdateDescriptorSets(device.handle, 1, &write, 0, nullptr);
+    device->vkUpdateDescriptorSets(device.handle, 1, &write, 0, nullptr);
   }
   return set;
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/g_buffer.h"
 
+#include <volk.h>
+
 #include "shaders/g_buffer_frag.h"
 #include "shaders/g_buffer_vert.h"
 
 namespace chandelier {
 namespace {
 
-void begin_pass(VkCommandBuffer cmd, const Targets& targets) {
+void begin_pass(gpu::Commands cmd, const Targets& targets) {
   const auto attachment = [](const gpu::Image& image, VkImageLayout layout) {
     return VkRenderingAttachmentInfo{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                      .imageView = image.view,
@@ -26,7 +28,7 @@ void begin_pass(VkCommandBuffer cmd, const Targets& targets) {
                              .colorAttachmentCount = 2,
                              .pColorAttachments = colors,
                              .pDepthAttachment = &depth};
-  vkCmdBeginRendering(cmd, &info);
+  cmd->vkCmdBeginRendering(cmd, &info);
   set_viewport(cmd, targets.width, targets.height);
 }
 
@@ -43,7 +45,7 @@ gpu::Pipeline make_g_buffer_pipeline(const gpu::Device& device, const GpuScene& 
                                               .depth = VK_FORMAT_D32_SFLOAT});
 }
 
-void record_g_buffer(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const DrawLists& lists,
+void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const DrawLists& lists,
                      const gpu::Buffer& view, const Targets& targets) {
   gpu::image_barrier(cmd, targets.surface, use::nothing, use::color_attachment);
   gpu::image_barrier(cmd, targets.radiance, use::nothing, use::color_attachment);
@@ -51,18 +53,18 @@ void record_g_buffer(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const G
   begin_pass(cmd, targets);
   const VkBuffer streams[]{scene.positions.handle, scene.vertex_attributes.handle};
   const VkDeviceSize offsets[]{0, 0};
-  vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
-  vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
+  cmd->vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
+  cmd->vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
   gpu::bind(cmd, pipeline,
             {gpu::storage(view), gpu::storage(lists.draws), gpu::storage(scene.instances),
              gpu::storage(scene.materials), gpu::storage(scene.uv_transforms)});
   for (const DrawList& list : lists_by_material(scene)) {
-    vkCmdSetCullMode(cmd, scene.double_sided[list.material] ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
-    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 1, 1,
-                            &scene.material_sets[list.material], 0, nullptr);
+    cmd->vkCmdSetCullMode(cmd, scene.double_sided[list.material] ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
+    cmd->vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 1, 1,
+                                 &scene.material_sets[list.material], 0, nullptr);
     draw_ordered_list(cmd, lists, list);
   }
-  vkCmdEndRendering(cmd);
+  cmd->vkCmdEndRendering(cmd);
   gpu::image_barrier(cmd, targets.surface, use::color_attachment, use::sampled);
   gpu::image_barrier(cmd, targets.radiance, use::color_attachment, use::storage);
   gpu::image_barrier(cmd, targets.depth, use::depth_attachment, use::sampled);

@@ -11,7 +11,7 @@ gpu::Pipeline make_g_buffer_pipeline(const gpu::Device& device, const GpuScene& 
 
 /// Draws what `lists` kept for the camera into surface, depth and radiance; leaves the first two ready to be sampled
 /// and radiance as a storage image.
-void record_g_buffer(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const DrawLists& lists,
+void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const DrawLists& lists,
                      const gpu::Buffer& view, const Targets& targets);
 
 }  // namespace chandelier

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/shade.h"
 
+#include <volk.h>
+
 #include "frame_schema.h"
 #include "shaders/shade_comp.h"
 #include "shaders/visibility_comp.h"
@@ -43,7 +45,7 @@ const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pip
       .first->second;
 }
 
-void record_over_picture(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
+void record_over_picture(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
                          const Recipe& recipe, const ShadeInput& input, const CubeArray& store,
                          const Targets& targets) {
   const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, shader, recipe);
@@ -63,7 +65,7 @@ void record_over_picture(VkCommandBuffer cmd, const gpu::Device& device, ShadePi
                                             .light_end = input.first_light + input.light_count,
                                             .tiles_x = input.tiles.tiles_x,
                                             .words_per_tile = input.tiles.words_per_tile});
-  vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
+  cmd->vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
 }
 
 }  // namespace
@@ -76,7 +78,7 @@ ShadePipelines make_shade_pipelines(const gpu::Device& device) {
   return pipelines;
 }
 
-void record_visibility(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
+void record_visibility(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
                        const ShadeInput& input, const CubeArray& store, const Targets& targets) {
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE,
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_NONE);
@@ -85,7 +87,7 @@ void record_visibility(VkCommandBuffer cmd, const gpu::Device& device, ShadePipe
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
 }
 
-void record_shade(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
+void record_shade(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
                   const ShadeInput& input, const CubeArray& store, const Targets& targets) {
   gpu::image_barrier(cmd, targets.radiance, use::storage, use::storage);
   record_over_picture(cmd, device, pipelines, Shader::shade, recipe, input, store, targets);

@@ -33,9 +33,9 @@ struct ShadeInput {
   uint32_t light_count;
 };
 /// Filters the round's maps into `input.visibility`, which shading may read afterwards.
-void record_visibility(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
+void record_visibility(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
                        const ShadeInput& input, const CubeArray& store, const Targets& targets);
-void record_shade(VkCommandBuffer cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
+void record_shade(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
                   const ShadeInput& input, const CubeArray& store, const Targets& targets);
 
 }  // namespace chandelier

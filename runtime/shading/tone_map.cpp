@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shading/tone_map.h"
 
+#include <volk.h>
+
 #include "frame_schema.h"
 #include "shaders/exposure_comp.h"
 #include "shaders/tone_map_comp.h"
@@ -12,7 +14,7 @@ uint32_t groups(uint32_t pixels) {
   return (pixels + 15) / 16;
 }
 
-void computed_before_compute(VkCommandBuffer cmd) {
+void computed_before_compute(gpu::Commands cmd) {
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
@@ -34,7 +36,7 @@ gpu::Buffer make_luminance_sums(const gpu::Device& device, uint32_t width, uint3
                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::device);
 }
 
-void record_tone_map(VkCommandBuffer cmd, const TonePipelines& pipelines, std::optional<float> exposure_ev,
+void record_tone_map(gpu::Commands cmd, const TonePipelines& pipelines, std::optional<float> exposure_ev,
                      const gpu::Buffer& sums, const Targets& targets) {
   const uint32_t columns = groups(targets.width);
   const uint32_t rows = groups(targets.height);
@@ -43,16 +45,16 @@ void record_tone_map(VkCommandBuffer cmd, const TonePipelines& pipelines, std::o
   gpu::image_barrier(cmd, targets.radiance, use::storage, use::storage);
   gpu::bind(cmd, pipelines.sum, {gpu::storage_image(targets.radiance), gpu::storage(sums)});
   gpu::push_constants(cmd, pipelines.sum, constants);
-  vkCmdDispatch(cmd, columns, rows, 1);
+  cmd->vkCmdDispatch(cmd, columns, rows, 1);
   computed_before_compute(cmd);
   gpu::bind(cmd, pipelines.expose, {gpu::storage_image(targets.radiance), gpu::storage(sums)});
   gpu::push_constants(cmd, pipelines.expose, constants);
-  vkCmdDispatch(cmd, 1, 1, 1);
+  cmd->vkCmdDispatch(cmd, 1, 1, 1);
   computed_before_compute(cmd);
   gpu::image_barrier(cmd, targets.shown, use::nothing, use::storage);
   gpu::bind(cmd, pipelines.tone_map,
             {gpu::storage_image(targets.radiance), gpu::storage(sums), gpu::storage_image(targets.shown)});
-  vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
+  cmd->vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
   gpu::image_barrier(cmd, targets.shown, use::storage, use::copied);
 }
 

@@ -20,7 +20,7 @@ TonePipelines make_tone_pipelines(const gpu::Device& device);
 gpu::Buffer make_luminance_sums(const gpu::Device& device, uint32_t width, uint32_t height);
 
 /// Leaves the exposure used in the first record of `sums`, and `shown` ready to be copied from.
-void record_tone_map(VkCommandBuffer cmd, const TonePipelines& pipelines, std::optional<float> exposure_ev,
+void record_tone_map(gpu::Commands cmd, const TonePipelines& pipelines, std::optional<float> exposure_ev,
                      const gpu::Buffer& sums, const Targets& targets);
 
 }  // namespace chandelier

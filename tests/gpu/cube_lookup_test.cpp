@@ -152,7 +152,7 @@ class CubeLookupTest : public GpuTest {
     const DrawLists draws = make_draw_lists(device(), scene, uint64_t{scene.batch_instance_count} * view_count);
     const gpu::Buffer views = upload(maps.views);
     const gpu::Buffer counters = upload(std::vector<frame::CullCounters>(1));
-    gpu::run_once(device(), [&](VkCommandBuffer cmd) {
+    gpu::run_once(device(), [&](gpu::Commands cmd) {
       record_cull(cmd, device(), cull.light_frustum, scene,
                   {.views = views,
                    .counters = counters,
@@ -177,7 +177,7 @@ class CubeLookupTest : public GpuTest {
     const gpu::Buffer map_buffer = upload(maps.list.maps), views = upload(maps.views), asked = upload(questions);
     const gpu::Buffer out =
         gpu::make_buffer(device(), questions.size() * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::readback);
-    gpu::run_once(device(), [&](VkCommandBuffer cmd) {
+    gpu::run_once(device(), [&](gpu::Commands cmd) {
       gpu::bind(cmd, pipeline,
                 {gpu::storage(view), gpu::storage(map_buffer), gpu::storage(views), gpu::storage(asked),
                  gpu::storage(out), gpu::sampled(maps.store.depth.view, nearest)});

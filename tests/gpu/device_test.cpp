@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Choosing a device, and that the validation layer is heard.
+#include <volk.h>
+
 #include <cctype>
 
 #include "gpu/resources.h"
@@ -42,9 +44,9 @@ TEST(ValidationTest, HazardsAreReported) {
     const gpu::Buffer from = gpu::make_buffer(device, 256, copied, gpu::Memory::device);
     const gpu::Buffer to = gpu::make_buffer(device, 256, copied, gpu::Memory::device);
     const VkBufferCopy all{.size = 256};
-    gpu::run_once(device, [&](VkCommandBuffer cmd) {
-      vkCmdCopyBuffer(cmd, from.handle, to.handle, 1, &all);
-      vkCmdCopyBuffer(cmd, to.handle, from.handle, 1, &all);
+    gpu::run_once(device, [&](gpu::Commands cmd) {
+      cmd->vkCmdCopyBuffer(cmd, from.handle, to.handle, 1, &all);
+      cmd->vkCmdCopyBuffer(cmd, to.handle, from.handle, 1, &all);
     });
   }
   ASSERT_FALSE(device.validation_messages().empty());

@@ -40,7 +40,7 @@ class EchoTest : public GpuTest {
     std::memset(out.mapped, 0xEE, out.size_bytes);
     constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     const auto pipeline = gpu::make_compute_pipeline(device(), {.bindings = {buffer, buffer}, .more_sets = {}}, spirv);
-    gpu::run_once(device(), [&](VkCommandBuffer cmd) {
+    gpu::run_once(device(), [&](gpu::Commands cmd) {
       gpu::bind(cmd, pipeline, {gpu::storage(in), gpu::storage(out)});
       gpu::dispatch(cmd, device(), in.size_bytes / record_bytes, 64);
       gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,

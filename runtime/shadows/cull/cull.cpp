@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shadows/cull/cull.h"
 
+#include <volk.h>
+
 #include <algorithm>
 
 #include "shaders/cull_light_frustum_comp.h"
@@ -47,12 +49,12 @@ std::vector<DrawList> lists_for_shadows(const GpuScene& scene) {
   return lists;
 }
 
-void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,
+void record_cull(gpu::Commands cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,
                  const CullInput& input, const DrawLists& lists) {
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
                       VK_ACCESS_2_NONE, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                       VK_ACCESS_2_NONE);
-  vkCmdFillBuffer(cmd, lists.counts.handle, 0, VK_WHOLE_SIZE, 0);
+  cmd->vkCmdFillBuffer(cmd, lists.counts.handle, 0, VK_WHOLE_SIZE, 0);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                       VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
@@ -75,14 +77,15 @@ void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipe
                       VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);
 }
 
-void draw_ordered_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list) {
-  vkCmdDrawIndexedIndirect(cmd, lists.draws.handle, VkDeviceSize{list.first_batch_instance} * sizeof(frame::CasterDraw),
-                           list.batch_instances, frame::caster_draw_stride);
+void draw_ordered_list(gpu::Commands cmd, const DrawLists& lists, const DrawList& list) {
+  cmd->vkCmdDrawIndexedIndirect(cmd, lists.draws.handle,
+                                VkDeviceSize{list.first_batch_instance} * sizeof(frame::CasterDraw),
+                                list.batch_instances, frame::caster_draw_stride);
 }
 
-void draw_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list, uint32_t view_count) {
+void draw_list(gpu::Commands cmd, const DrawLists& lists, const DrawList& list, uint32_t view_count) {
   if (list.batch_instances == 0) return;
-  vkCmdDrawIndexedIndirectCount(
+  cmd->vkCmdDrawIndexedIndirectCount(
       cmd, lists.draws.handle, VkDeviceSize{list.first_batch_instance} * view_count * sizeof(frame::CasterDraw),
       lists.counts.handle, list.number * 4, list.batch_instances * view_count, frame::caster_draw_stride);
 }

@@ -46,12 +46,12 @@ struct CullInput {
   bool casters_only = false;  // leaves out what throws no shadow
 };
 /// Records everything between earlier reads of `lists` and later indirect draws from them.
-void record_cull(VkCommandBuffer cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,
+void record_cull(gpu::Commands cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,
                  const CullInput& input, const DrawLists& lists);
 
 /// One multi-draw-indirect over a list that was culled with keep_order.
-void draw_ordered_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list);
+void draw_ordered_list(gpu::Commands cmd, const DrawLists& lists, const DrawList& list);
 /// The same over a list that was culled for `view_count` views without it.
-void draw_list(VkCommandBuffer cmd, const DrawLists& lists, const DrawList& list, uint32_t view_count);
+void draw_list(gpu::Commands cmd, const DrawLists& lists, const DrawList& list, uint32_t view_count);
 
 }  // namespace chandelier

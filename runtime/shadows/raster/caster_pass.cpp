@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shadows/raster/caster_pass.h"
 
+#include <volk.h>
+
 #include "frame/targets.h"
 #include "shaders/caster_masked_frag.h"
 #include "shaders/caster_masked_vert.h"
@@ -9,7 +11,7 @@
 namespace chandelier {
 namespace {
 
-void begin_pass(VkCommandBuffer cmd, const CubeArray& store, uint32_t cubes) {
+void begin_pass(gpu::Commands cmd, const CubeArray& store, uint32_t cubes) {
   const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                         .imageView = store.depth.view,
                                         .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
@@ -20,10 +22,10 @@ void begin_pass(VkCommandBuffer cmd, const CubeArray& store, uint32_t cubes) {
                              .renderArea = {{0, 0}, {store.face_size_px, store.face_size_px}},
                              .layerCount = 6 * cubes,
                              .pDepthAttachment = &depth};
-  vkCmdBeginRendering(cmd, &info);
+  cmd->vkCmdBeginRendering(cmd, &info);
   set_viewport(cmd, store.face_size_px, store.face_size_px);
   // Both sides of a surface cast: an open mesh shadows whichever way it faces.
-  vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
+  cmd->vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
 }
 
 }  // namespace
@@ -44,15 +46,14 @@ CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene&
                                                .depth = VK_FORMAT_D32_SFLOAT})};
 }
 
-void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const GpuScene& scene,
-                    const DrawLists& lists, const gpu::Buffer& views, uint32_t view_count, const CubeArray& store,
-                    uint32_t cubes) {
+void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const GpuScene& scene, const DrawLists& lists,
+                    const gpu::Buffer& views, uint32_t view_count, const CubeArray& store, uint32_t cubes) {
   gpu::image_barrier(cmd, store.depth, use::nothing, use::depth_attachment);
   begin_pass(cmd, store, cubes);
   const VkBuffer streams[]{scene.positions.handle, scene.vertex_attributes.handle};
   const VkDeviceSize offsets[]{0, 0};
-  vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
-  vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
+  cmd->vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
+  cmd->vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
 
   const auto draw_lists = lists_for_shadows(scene);
   gpu::bind(cmd, pipelines.opaque, {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances)});
@@ -62,11 +63,11 @@ void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const
               {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances),
                gpu::storage(scene.materials), gpu::storage(scene.uv_transforms)});
   for (size_t i = 1; i < draw_lists.size(); ++i) {
-    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.masked.layout, 1, 1,
-                            &scene.material_sets[draw_lists[i].material], 0, nullptr);
+    cmd->vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.masked.layout, 1, 1,
+                                 &scene.material_sets[draw_lists[i].material], 0, nullptr);
     draw_list(cmd, lists, draw_lists[i], view_count);
   }
-  vkCmdEndRendering(cmd);
+  cmd->vkCmdEndRendering(cmd);
   gpu::image_barrier(cmd, store.depth, use::depth_attachment, use::sampled);
 }
 

@@ -15,8 +15,7 @@ struct CasterPipelines {
 CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene& scene);
 
 /// Clears the first `cubes` cubes of the store and draws into them; leaves the store ready to be sampled.
-void record_casters(VkCommandBuffer cmd, const CasterPipelines& pipelines, const GpuScene& scene,
-                    const DrawLists& lists, const gpu::Buffer& views, uint32_t view_count, const CubeArray& store,
-                    uint32_t cubes);
+void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const GpuScene& scene, const DrawLists& lists,
+                    const gpu::Buffer& views, uint32_t view_count, const CubeArray& store, uint32_t cubes);
 
 }  // namespace chandelier
