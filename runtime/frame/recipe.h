@@ -54,6 +54,8 @@ struct Recipe {
   std::optional<float> max_rmse;     // error-driven: as few maps as keep so much error of the shown picture
   uint32_t face_size_px = 512;       // width of one face of a cube
   uint64_t shadow_budget_bytes = uint64_t{1024} << 20;  // depth kept at a time; more maps are drawn in further rounds
+
+  bool operator==(const Recipe&) const = default;
 };
 
 /// One stage of a frame and what it may be answered with, for options, help and reports.

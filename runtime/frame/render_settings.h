@@ -25,6 +25,8 @@ struct RenderSettings {
   std::vector<uint32_t> centers;           // whose map each light of the pack takes; pack::none, or empty: as selected
   bool lights_out_of_view = false;         // are selected too, as for a camera that looks everywhere
   VisibilitySource visibility;             // needed by filter rays, unused by others
+
+  bool operator==(const RenderSettings&) const = default;
 };
 
 /// Width over height.

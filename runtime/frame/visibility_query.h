@@ -27,6 +27,10 @@ struct VisibilityQuery {
   std::span<const SurfacePoint> points;
   std::span<uint8_t> visibility;
 };
-using VisibilitySource = std::function<void(const VisibilityQuery&)>;
+/// Answers queries; empty where nothing does. Two are equal only where both are empty.
+struct VisibilitySource : std::function<void(const VisibilityQuery&)> {
+  using std::function<void(const VisibilityQuery&)>::function;
+  friend bool operator==(const VisibilitySource& a, const VisibilitySource& b) { return !a && !b; }
+};
 
 }  // namespace chandelier

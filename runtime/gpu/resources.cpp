@@ -94,9 +94,13 @@ void run_once(const Device& device, const std::function<void(Commands)>& record)
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   check(cmd->vkBeginCommandBuffer(cmd, &begin), "vkBeginCommandBuffer");
   record(cmd);
-  check(cmd->vkEndCommandBuffer(cmd), "vkEndCommandBuffer");
+  submit_and_wait(device, handle);
+}
+
+void submit_and_wait(const Device& device, VkCommandBuffer commands) {
+  check(device->vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   const VkCommandBufferSubmitInfo submitted{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                                            .commandBuffer = handle};
+                                            .commandBuffer = commands};
   const VkSubmitInfo2 submit{
       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &submitted};
   check(device->vkQueueSubmit2(device.queue, 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit2");
@@ -128,6 +132,10 @@ void memory_barrier(Commands cmd, VkPipelineStageFlags2 from_stage, VkAccessFlag
 }
 
 void image_barrier(Commands cmd, const Image& image, const ImageUse& from, const ImageUse& to) {
+  image_barrier(cmd, image.handle, from, to, image.aspect);
+}
+
+void image_barrier(Commands cmd, VkImage image, const ImageUse& from, const ImageUse& to, VkImageAspectFlags aspect) {
   const VkImageMemoryBarrier2 barrier{
       .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
       .srcStageMask = from.stage,
@@ -138,8 +146,8 @@ void image_barrier(Commands cmd, const Image& image, const ImageUse& from, const
       .newLayout = to.layout,
       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-      .image = image.handle,
-      .subresourceRange = {image.aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS}};
+      .image = image,
+      .subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS}};
   const VkDependencyInfo info{
       .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
   cmd->vkCmdPipelineBarrier2(cmd, &info);

@@ -80,10 +80,13 @@ Owned<VkSampler> make_sampler(const Device& device, const VkSamplerCreateInfo& i
 /// Records commands, submits them and waits until they are done.
 void run_once(const Device& device, const std::function<void(Commands)>& record);
 
+/// Ends the commands, submits them and waits until they are done.
+void submit_and_wait(const Device& device, VkCommandBuffer commands);
+
 /// A new device buffer with these bytes.
 Buffer upload_buffer(const Device& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
 
-/// Everything before waits in nothing after `from` writes are visible to `to`; for buffers and images alike.
+/// What `to` does after this waits for what `from` did before it, and sees what `from` wrote: buffers and images.
 void memory_barrier(Commands cmd, VkPipelineStageFlags2 from_stage, VkAccessFlags2 from_access,
                     VkPipelineStageFlags2 to_stage, VkAccessFlags2 to_access);
 
@@ -94,5 +97,7 @@ struct ImageUse {
 };
 /// Moves a whole image from one use to the next.
 void image_barrier(Commands cmd, const Image& image, const ImageUse& from, const ImageUse& to);
+void image_barrier(Commands cmd, VkImage image, const ImageUse& from, const ImageUse& to,
+                   VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
 
 }  // namespace chandelier::gpu

@@ -4,6 +4,7 @@
 #include <volk.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "shaders/tiles_comp.h"
 
@@ -18,7 +19,8 @@ TilePipeline make_tile_pipeline(const gpu::Device& device) {
           make_texel_sampler(device)};
 }
 
-void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, TileLists& lists) {
+void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, gpu::Retired& retired,
+                     TileLists& lists) {
   lists.tiles_x = (width + frame::tile_size_px - 1) / frame::tile_size_px;
   lists.tiles_y = (height + frame::tile_size_px - 1) / frame::tile_size_px;
   lists.words_per_tile = static_cast<uint32_t>(std::max<size_t>(1, (lights + 31) / 32));
@@ -26,8 +28,11 @@ void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height,
   if (bytes > device.limits.maxStorageBufferRange)
     throw gpu::Error("too many lights in view for lookup tiles on this device (" + std::to_string(lights) +
                      "); use lookup all or a smaller picture");
-  if (lists.words.size_bytes < bytes)
-    lists.words = gpu::make_buffer(device, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::device);
+  if (lists.words.size_bytes >= bytes) return;
+  const auto size =
+      std::min<VkDeviceSize>(gpu::grown(bytes, lists.words.size_bytes), device.limits.maxStorageBufferRange);
+  gpu::Buffer words = gpu::make_buffer(device, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::device);
+  retired.add(std::exchange(lists.words, std::move(words)));
 }
 
 void record_tiles(gpu::Commands cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,

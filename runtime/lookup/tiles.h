@@ -4,6 +4,7 @@
 
 #include "frame/targets.h"
 #include "frame_schema.h"
+#include "gpu/frames.h"
 #include "gpu/pipelines.h"
 
 namespace chandelier {
@@ -20,8 +21,10 @@ struct TileLists {
   uint32_t tiles_y = 0;
   uint32_t words_per_tile = 0;
 };
-/// Makes room for `lights`; keeps what is large enough. Throws gpu::Error where the device cannot bind so much.
-void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, TileLists& lists);
+/// Makes room for `lights`; keeps what is large enough, and retires what is not. Throws gpu::Error where the device
+/// cannot bind so much.
+void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, gpu::Retired& retired,
+                     TileLists& lists);
 
 /// Reads depth, which must be ready to be sampled; leaves `lists` ready for compute shaders.
 void record_tiles(gpu::Commands cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,

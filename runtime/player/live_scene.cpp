@@ -2,6 +2,7 @@
 #include "player/live_scene.h"
 
 #include <fmt/format.h>
+#include <volk.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -39,6 +40,7 @@ LiveScene::LiveScene(const Options& asked, std::unique_ptr<const Scene> scene, g
 
 // Two scenes at once may be too many: the device holds none meanwhile, and none where this throws.
 RenderSettings LiveScene::put_on_device(const Scene& scene) {
+  device_->vkDeviceWaitIdle(device_.handle);
   on_device_.reset();
   OnDevice made{.visibility = visibility_for(scene.options.recipes, scene.pack),
                 .renderer = Renderer(device_, scene.pack)};

@@ -18,7 +18,7 @@ class LiveScene {
   /// Looks at the file twice a second. A pack that has taken the shown one's place and is not being written any more
   /// is shown from now on, with the settings' camera and size; a camera that is still as the pack had it follows the
   /// pack's. One that cannot be shown leaves the older one and a warning on stderr. True where anything of that
-  /// happened: what was drawn before is out of date. No frame may be on its way. Throws gpu::Error where not even the
+  /// happened: what was drawn before is out of date. Throws gpu::Error where not even the
   /// older one can be shown again.
   bool follow();
 

@@ -30,7 +30,7 @@ struct Scene {
   explicit Scene(const Options& asked);
 
   FileStamp stamp;  // from before the file was read
-  pack::File pack;  // a window's own copy: what is written into the file while it is shown must not be seen
+  pack::File pack;  // a copy where it is drawn: what is written into the file after it was checked must not be seen
   Options options;  // with the headlight that the pack needs, and recipes that keep the budget
   NamedCamera camera;
 };

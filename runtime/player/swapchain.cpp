@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows a picture in a window's surface. One picture is in flight: drawing it takes far longer than showing it.
 #include "player/swapchain.h"
 
 #include <volk.h>
@@ -8,25 +7,6 @@
 
 namespace chandelier::player {
 namespace {
-
-void image_barrier(gpu::Commands commands, VkImage image, VkImageLayout from, VkImageLayout to,
-                   VkAccessFlags2 src_access, VkAccessFlags2 dst_access, VkPipelineStageFlags2 dst_stage) {
-  VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
-  barrier.srcAccessMask = src_access;
-  barrier.dstStageMask = dst_stage;
-  barrier.dstAccessMask = dst_access;
-  barrier.oldLayout = from;
-  barrier.newLayout = to;
-  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image;
-  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  dependency.imageMemoryBarrierCount = 1;
-  dependency.pImageMemoryBarriers = &barrier;
-  commands->vkCmdPipelineBarrier2(commands, &dependency);
-}
 
 VkSemaphore make_semaphore(const gpu::Device& device) {
   const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
@@ -37,17 +17,11 @@ VkSemaphore make_semaphore(const gpu::Device& device) {
 
 }  // namespace
 
-Swapchain::Swapchain(const gpu::Device& device, VkSurfaceKHR surface) : device_(device), surface_(surface) {
+Swapchain::Swapchain(const gpu::Device& device, VkSurfaceKHR surface, uint32_t slots)
+    : device_(device), surface_(surface) {
   try {
     choose_format();
-    acquired_ = make_semaphore(device_);
-    const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    gpu::check(device_->vkCreateFence(device_.handle, &fence, nullptr, &done_), "vkCreateFence");
-    VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    allocate.commandPool = device_.command_pool;
-    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    allocate.commandBufferCount = 1;
-    gpu::check(device_->vkAllocateCommandBuffers(device_.handle, &allocate, &commands_), "vkAllocateCommandBuffers");
+    for (uint32_t i = 0; i < slots; ++i) acquired_.push_back(make_semaphore(device_));
   } catch (...) {
     destroy();
     throw;
@@ -61,10 +35,8 @@ Swapchain::~Swapchain() {
 void Swapchain::destroy() {
   device_->vkDeviceWaitIdle(device_.handle);
   for (VkSemaphore semaphore : drawn_) device_->vkDestroySemaphore(device_.handle, semaphore, nullptr);
+  for (VkSemaphore semaphore : acquired_) device_->vkDestroySemaphore(device_.handle, semaphore, nullptr);
   device_->vkDestroySwapchainKHR(device_.handle, swapchain_, nullptr);
-  if (commands_ != VK_NULL_HANDLE) device_->vkFreeCommandBuffers(device_.handle, device_.command_pool, 1, &commands_);
-  device_->vkDestroyFence(device_.handle, done_, nullptr);
-  device_->vkDestroySemaphore(device_.handle, acquired_, nullptr);
   device_.instance_functions().vkDestroySurfaceKHR(device_.instance, surface_, nullptr);
 }
 
@@ -136,75 +108,37 @@ bool Swapchain::make(VkExtent2D window) {
   return true;
 }
 
-bool Swapchain::show(VkImage image, VkExtent2D size, VkExtent2D window) {
-  if (window.width == 0 || window.height == 0) return false;
+std::optional<WindowImage> Swapchain::acquire(uint32_t slot, VkExtent2D window) {
+  if (window.width == 0 || window.height == 0) return std::nullopt;
   uint32_t index = 0;
-  VkResult acquired = VK_ERROR_OUT_OF_DATE_KHR;
-  if (swapchain_ != VK_NULL_HANDLE && extent_.width == window.width && extent_.height == window.height)
-    acquired =
-        device_->vkAcquireNextImageKHR(device_.handle, swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &index);
+  const auto acquire_image = [&] {
+    return device_->vkAcquireNextImageKHR(device_.handle, swapchain_, UINT64_MAX, acquired_[slot], VK_NULL_HANDLE,
+                                          &index);
+  };
+  const bool is_made = swapchain_ != VK_NULL_HANDLE && extent_.width == window.width && extent_.height == window.height;
+  VkResult acquired = is_made ? acquire_image() : VK_ERROR_OUT_OF_DATE_KHR;
   if (acquired == VK_ERROR_OUT_OF_DATE_KHR) {
-    if (!make(window)) return false;
-    acquired =
-        device_->vkAcquireNextImageKHR(device_.handle, swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &index);
-    if (acquired == VK_ERROR_OUT_OF_DATE_KHR) return false;  // resized in between: the next frame makes it anew
+    if (!make(window)) return std::nullopt;
+    acquired = acquire_image();
+    if (acquired == VK_ERROR_OUT_OF_DATE_KHR) return std::nullopt;  // resized in between: the next frame makes it anew
   }
   if (acquired != VK_SUBOPTIMAL_KHR) gpu::check(acquired, "vkAcquireNextImageKHR");
-  record(image, size, images_[index]);
-  submit(index);
+  return WindowImage{images_[index], extent_, acquired_[slot], drawn_[index], index};
+}
 
+bool Swapchain::present(const WindowImage& image) {
   VkPresentInfoKHR present{.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR};
   present.waitSemaphoreCount = 1;
-  present.pWaitSemaphores = &drawn_[index];
+  present.pWaitSemaphores = &image.drawn;
   present.swapchainCount = 1;
   present.pSwapchains = &swapchain_;
-  present.pImageIndices = &index;
+  present.pImageIndices = &image.index;
   const VkResult presented = device_->vkQueuePresentKHR(device_.queue, &present);
   if (presented == VK_ERROR_OUT_OF_DATE_KHR || presented == VK_SUBOPTIMAL_KHR)
-    extent_ = {};  // makes the next show() start anew
+    extent_ = {};  // makes the next acquire() start anew
   else
     gpu::check(presented, "vkQueuePresentKHR");
   return presented != VK_ERROR_OUT_OF_DATE_KHR;
-}
-
-void Swapchain::record(VkImage from, VkExtent2D size, VkImage to) {
-  const gpu::Commands commands(device_, commands_);
-  VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  gpu::check(device_->vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
-  image_barrier(commands, to, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_ACCESS_2_NONE,
-                VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_BLIT_BIT);
-  VkImageBlit blit{};
-  blit.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-  blit.srcOffsets[1] = {static_cast<int32_t>(size.width), static_cast<int32_t>(size.height), 1};
-  blit.dstSubresource = blit.srcSubresource;
-  blit.dstOffsets[1] = {static_cast<int32_t>(extent_.width), static_cast<int32_t>(extent_.height), 1};
-  device_->vkCmdBlitImage(commands_, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
-                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_LINEAR);
-  image_barrier(commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
-                VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_NONE, VK_PIPELINE_STAGE_2_NONE);
-  gpu::check(device_->vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
-}
-
-void Swapchain::submit(uint32_t index) {
-  VkSemaphoreSubmitInfo wait{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
-  wait.semaphore = acquired_;
-  wait.stageMask = VK_PIPELINE_STAGE_2_BLIT_BIT;
-  VkSemaphoreSubmitInfo signal{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
-  signal.semaphore = drawn_[index];
-  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
-  commands.commandBuffer = commands_;
-  VkSubmitInfo2 info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
-  info.waitSemaphoreInfoCount = 1;
-  info.pWaitSemaphoreInfos = &wait;
-  info.commandBufferInfoCount = 1;
-  info.pCommandBufferInfos = &commands;
-  info.signalSemaphoreInfoCount = 1;
-  info.pSignalSemaphoreInfos = &signal;
-  gpu::check(device_->vkResetFences(device_.handle, 1, &done_), "vkResetFences");
-  gpu::check(device_->vkQueueSubmit2(device_.queue, 1, &info, done_), "vkQueueSubmit2");
-  gpu::check(device_->vkWaitForFences(device_.handle, 1, &done_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
 }
 
 }  // namespace chandelier::player

@@ -1,33 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows a picture in a window's surface: acquire, blit, present.
+// A window's images: acquire one, draw, present it.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "gpu/device.h"
 
 namespace chandelier::player {
 
+/// An image of the window, to be drawn to.
+struct WindowImage {
+  VkImage image;
+  VkExtent2D size;
+  VkSemaphore acquired;  // to wait for before the image is written
+  VkSemaphore drawn;     // to signal when it is in PRESENT_SRC_KHR
+  uint32_t index;
+};
+
 class Swapchain {
  public:
-  /// Takes the surface, which must belong to the device's instance. Throws gpu::Error.
-  Swapchain(const gpu::Device& device, VkSurfaceKHR surface);
+  /// Takes the surface, which must belong to the device's instance. `slots`: frames in flight. Throws gpu::Error.
+  Swapchain(const gpu::Device& device, VkSurfaceKHR surface, uint32_t slots);
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
 
-  /// Blits `image` (TRANSFER_SRC_OPTIMAL, its last use waited for) over the whole window and waits until that is done.
-  /// `window` is the size of the window now, pixels; false where the picture is not to be seen: the window has no area,
-  /// or has changed meanwhile. Throws.
-  bool show(VkImage image, VkExtent2D size, VkExtent2D window);
+  /// The next image for a frame of this slot, whose last frame has finished. `window` is the size of the window now,
+  /// pixels; nothing where no picture would be seen: the window has no area, or has changed meanwhile. Throws.
+  std::optional<WindowImage> acquire(uint32_t slot, VkExtent2D window);
+  /// Shows it once `drawn` is signalled; false where the window has changed meanwhile. Throws.
+  bool present(const WindowImage& image);
 
  private:
   void choose_format();
   bool make(VkExtent2D window);
   void destroy();
-  void record(VkImage from, VkExtent2D size, VkImage to);
-  void submit(uint32_t index);
 
   const gpu::Device& device_;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
@@ -35,10 +44,8 @@ class Swapchain {
   VkExtent2D extent_{};
   VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
   std::vector<VkImage> images_;
-  std::vector<VkSemaphore> drawn_;  // one per image: the presentation engine may still wait on another image's
-  VkSemaphore acquired_ = VK_NULL_HANDLE;
-  VkFence done_ = VK_NULL_HANDLE;
-  VkCommandBuffer commands_ = VK_NULL_HANDLE;
+  std::vector<VkSemaphore> drawn_;     // one per image: the presentation engine may still wait on another image's
+  std::vector<VkSemaphore> acquired_;  // one per slot
 };
 
 }  // namespace chandelier::player

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "gpu/frames.h"
 #include "player/darkness.h"
 #include "player/swapchain.h"
 #include "player/window_keys.h"
@@ -43,6 +44,11 @@ float speed_through(const pack::File& pack) {
   const pack::BakeInfo& info = *pack.view().bake_info;
   return std::clamp(glm::distance(info.bounds_min_ws, info.bounds_max_ws) / kCrossing_s, kSlowest_m_per_s,
                     kFastest_m_per_s);
+}
+
+// Where the CPU draws, a second frame on its way would only be late.
+uint32_t frames_in_flight(const gpu::Device& device) {
+  return device.is_software ? 1 : 2;
 }
 
 std::string title(const LiveScene& live, const FrameStats& stats) {
@@ -125,28 +131,36 @@ struct Window::Impl {
   }
 };
 
-// What is on the screen: drawn anew where something changed, else left as it is.
+// What is on the screen: drawn anew where something changed, else left as it is. The next frame is recorded while the
+// device still works on the last.
 class Window::Screen {
  public:
   Screen(Impl& of, LiveScene& live, const gpu::Device& device, VkSurfaceKHR surface)
-      : impl_(of), live_(live), swapchain_(device, surface) {}
+      : impl_(of),
+        live_(live),
+        ring_(device, frames_in_flight(device)),
+        swapchain_(device, surface, frames_in_flight(device)) {}
 
   /// True where there was anything to do. `draws_anyway`: even if nothing changed.
   bool update(bool draws_anyway) {
     const bool is_replaced = live_.follow();
+    if (is_replaced) last_slot_.reset();
     if (is_replaced || draws_anyway || !(of(live_.settings) == drawn_))
-      draw();
-    else if (!impl_.is_covered)
+      show(true);
+    else if (impl_.is_covered)
+      show(false);
+    else {
+      take_stats();
       return false;
-    const VkExtent2D size{drawn_.width, drawn_.height};
-    impl_.is_covered = !swapchain_.show(live_.renderer().shown_image(), size, framebuffer_size(impl_.window));
-    frames_shown_ += !impl_.is_covered;
+    }
     return true;
   }
 
   uint32_t frames_shown() const { return frames_shown_; }
   /// One line of what was drawn, for the end.
-  std::string summary(const gpu::Device& device) const {
+  std::string summary(const gpu::Device& device) {
+    ring_.wait_for_all();
+    take_stats();
     const Options& options = live_.scene().options;
     return fmt::format("{}: {} frames drawn, the last {}x{}, {}, {} lights, {} shadow maps, {:.1f} ms on {}",
                        options.pack.string(), frames_drawn_, drawn_.width, drawn_.height,
@@ -166,12 +180,47 @@ class Window::Screen {
     return {settings.camera, settings.width, settings.height, settings.headlight};
   }
 
-  void draw() {
-    stats_ = live_.renderer().draw(live_.settings);
-    live_.settings.previous_centers = stats_.centers;
+  // Draws the picture, or takes the last one again, and shows it.
+  void show(bool draws) {
+    const uint32_t slot = ring_.next();
+    const auto image = swapchain_.acquire(slot, framebuffer_size(impl_.window));
+    impl_.is_covered = !image;
+    if (!image) return;
+    const bool by_rays = live_.settings.recipe.filter == Filter::rays;
+    if (draws && by_rays) finish_drawing(live_.renderer().draw(live_.settings));
+    const gpu::Commands cmd = ring_.begin(slot);
+    const Target target{image->image, image->size};
+    if (draws && !by_rays) {
+      last_slot_ = slot;
+      finish_drawing(live_.renderer().record(cmd, slot, live_.settings, target));
+    } else {
+      live_.renderer().record_again(cmd, target);
+    }
+    ring_.submit(slot, image->acquired, image->drawn);
+    impl_.is_covered = !swapchain_.present(*image);
+    frames_shown_ += !impl_.is_covered;
+    if (draws) judge_first_picture();
+  }
+
+  void finish_drawing(const FrameStats& known) {
+    const double last_ms = known.frame_ms > 0.0 ? known.frame_ms : stats_.frame_ms;
+    stats_ = known;
+    stats_.frame_ms = last_ms;
+    live_.settings.previous_centers = known.centers;
     drawn_ = of(live_.settings);
     ++frames_drawn_;
     glfwSetWindowTitle(impl_.window, title(live_, stats_).c_str());
+  }
+
+  // The last frame's time, once the device has finished it.
+  void take_stats() {
+    if (!last_slot_ || !ring_.is_finished(*last_slot_)) return;
+    stats_ = live_.renderer().stats(*last_slot_);
+    last_slot_.reset();
+    glfwSetWindowTitle(impl_.window, title(live_, stats_).c_str());
+  }
+
+  void judge_first_picture() {
     const Scene& scene = live_.scene();
     if (std::exchange(judged_, scene.stamp) != scene.stamp)
       warn_of_black(scene.options, scene.pack.view(), live_.renderer().read_back());
@@ -179,10 +228,12 @@ class Window::Screen {
 
   Impl& impl_;
   LiveScene& live_;
+  gpu::FrameRing ring_;
   Swapchain swapchain_;
   View drawn_;
   FrameStats stats_;
-  FileStamp judged_;  // of the last pack whose first picture was looked at
+  std::optional<uint32_t> last_slot_;  // of the last frame recorded, while its time is not known
+  FileStamp judged_;                   // of the last pack whose first picture was looked at
   uint32_t frames_drawn_ = 0;
   uint32_t frames_shown_ = 0;
 };

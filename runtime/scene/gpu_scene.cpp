@@ -13,13 +13,24 @@ namespace {
 constexpr VkBufferUsageFlags storage_use = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkBufferUsageFlags vertex_use = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
 
-template <typename T>
-gpu::Buffer upload(const gpu::Device& device, std::span<const T> records, VkBufferUsageFlags usage, const char* what) {
-  if ((usage & storage_use) && records.size_bytes() > device.limits.maxStorageBufferRange)
-    throw gpu::Error(std::string(what) + " do not fit a storage buffer of this device (" +
-                     std::to_string(records.size_bytes()) + " of " +
-                     std::to_string(device.limits.maxStorageBufferRange) + " bytes)");
-  return gpu::upload_buffer(device, std::as_bytes(records), usage);
+struct Uploads {
+  const gpu::Device& device;
+  gpu::Uploader uploader;
+
+  template <typename T>
+  gpu::Buffer operator()(std::span<const T> records, VkBufferUsageFlags usage, const char* what) {
+    if ((usage & storage_use) && records.size_bytes() > device.limits.maxStorageBufferRange)
+      throw gpu::Error(std::string(what) + " do not fit a storage buffer of this device (" +
+                       std::to_string(records.size_bytes()) + " of " +
+                       std::to_string(device.limits.maxStorageBufferRange) + " bytes)");
+    return uploader.buffer(std::as_bytes(records), usage);
+  }
+};
+
+// Nearly all of what is uploaded.
+uint64_t bytes_of(const pack::View& pack) {
+  return pack.positions.size_bytes() + pack.vertex_attributes.size_bytes() + pack.indices.size_bytes() +
+         pack.batches.size_bytes() + pack.batch_instances.size_bytes() + pack.image_data.size_bytes();
 }
 
 std::vector<MaterialRun> find_runs(const pack::View& pack) {
@@ -32,7 +43,7 @@ std::vector<MaterialRun> find_runs(const pack::View& pack) {
   return runs;
 }
 
-void upload_runs(const gpu::Device& device, const pack::View& pack, GpuScene& scene) {
+void upload_runs(Uploads& upload, const pack::View& pack, GpuScene& scene) {
   scene.runs = find_runs(pack);
   const auto masked = [&](const MaterialRun& run) {
     return pack.materials[run.material].alpha_mode == pack::AlphaMode::mask;
@@ -47,27 +58,30 @@ void upload_runs(const gpu::Device& device, const pack::View& pack, GpuScene& sc
   }
   for (size_t i = 0; i < run_of_batch_instance.size(); ++i)
     if (!throws_shadow(pack, pack.batch_instances[i])) run_of_batch_instance[i] |= frame::shadowless_bit;
-  scene.material_runs = upload<uint32_t>(device, first_of_run, storage_use, "material runs");
-  scene.run_of_batch_instance = upload<uint32_t>(device, run_of_batch_instance, storage_use, "batch instances");
+  scene.material_runs = upload(std::span<const uint32_t>(first_of_run), storage_use, "material runs");
+  scene.run_of_batch_instance =
+      upload(std::span<const uint32_t>(run_of_batch_instance), storage_use, "batch instances");
 }
 
 }  // namespace
 
-GpuScene upload_scene(const gpu::Device& device, const pack::File& file) {
+GpuScene upload_scene(const gpu::Device& device, const pack::File& file, const UploadOptions& options) {
   const pack::View& pack = file.view();
+  Uploads upload{device, {device, bytes_of(pack), options.progress}};
   GpuScene scene;
-  scene.positions = upload(device, pack.positions, vertex_use, "positions");
-  scene.vertex_attributes = upload(device, pack.vertex_attributes, vertex_use, "vertex attributes");
-  scene.indices = upload(device, pack.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices");
-  scene.batches = upload(device, pack.batches, storage_use, "batches");
-  scene.instances = upload(device, pack.instances, storage_use, "instances");
-  scene.batch_instances = upload(device, pack.batch_instances, storage_use, "batch instances");
-  scene.materials = upload(device, pack.materials, storage_use, "materials");
-  scene.uv_transforms = upload<glm::vec3>(device, uv_rows(pack), storage_use, "texture transforms");
+  scene.positions = upload(pack.positions, vertex_use, "positions");
+  scene.vertex_attributes = upload(pack.vertex_attributes, vertex_use, "vertex attributes");
+  scene.indices = upload(pack.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices");
+  scene.batches = upload(pack.batches, storage_use, "batches");
+  scene.instances = upload(pack.instances, storage_use, "instances");
+  scene.batch_instances = upload(pack.batch_instances, storage_use, "batch instances");
+  scene.materials = upload(pack.materials, storage_use, "materials");
+  scene.uv_transforms = upload(std::span<const glm::vec3>(uv_rows(pack)), storage_use, "texture transforms");
   scene.batch_instance_count = static_cast<uint32_t>(pack.batch_instances.size());
-  upload_runs(device, pack, scene);
+  upload_runs(upload, pack, scene);
   for (const pack::Material& material : pack.materials) scene.double_sided.push_back(material.double_sided != 0);
-  upload_textures(device, pack, scene);
+  upload_textures(device, upload.uploader, pack, options.anisotropy, scene);
+  upload.uploader.finish();
   scene.lights.assign(pack.lights.begin(), pack.lights.end());
   scene.bounds = {pack.bake_info->bounds_min_ws, pack.bake_info->bounds_max_ws};
   return scene;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gpu/pipelines.h"
+#include "gpu/uploader.h"
 #include "pack_file.h"
 #include "scene/bounds.h"
 
@@ -44,8 +45,12 @@ struct GpuScene {
   Bounds bounds;
 };
 
+struct UploadOptions {
+  float anisotropy = 1.0f;       // of texture fetches on slanted surfaces: 1 none, to 16
+  gpu::UploadProgress progress;  // may be empty
+};
 /// Throws gpu::Error, also where the scene is too large for the device.
-GpuScene upload_scene(const gpu::Device& device, const pack::File& pack);
+GpuScene upload_scene(const gpu::Device& device, const pack::File& pack, const UploadOptions& options = {});
 
 /// The vertex streams of GpuScene: positions alone for depth, both for shading.
 std::vector<gpu::VertexStream> position_stream();

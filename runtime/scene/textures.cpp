@@ -10,12 +10,6 @@ namespace chandelier {
 namespace {
 
 constexpr uint32_t textures_per_material = 5;
-constexpr gpu::ImageUse nothing_yet{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_NONE, VK_ACCESS_2_NONE};
-constexpr gpu::ImageUse copied_to{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
-                                  VK_ACCESS_2_TRANSFER_WRITE_BIT};
-constexpr gpu::ImageUse read_by_fragments{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                                          VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
-
 struct Format {
   VkFormat format;
   uint32_t block_size;   // texels a side
@@ -56,7 +50,8 @@ std::vector<VkBufferImageCopy> copies_of_levels(const pack::Image& info, const F
   return copies;
 }
 
-gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std::span<const std::byte> texels) {
+gpu::Image upload_image(const gpu::Device& device, gpu::Uploader& uploader, const pack::Image& info,
+                        std::span<const std::byte> texels) {
   if (std::max(info.width, info.height) > device.limits.maxImageDimension2D)
     throw gpu::Error("an image of " + std::to_string(info.width) + " x " + std::to_string(info.height) +
                      " texels is too large for this device");
@@ -68,15 +63,7 @@ gpu::Image upload_image(const gpu::Device& device, const pack::Image& info, std:
                                               .height = info.height,
                                               .levels = info.level_count,
                                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-  gpu::Buffer staging = gpu::make_buffer(device, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::upload);
-  std::copy(texels.begin(), texels.end(), staging.mapped);
-  const std::vector<VkBufferImageCopy> copies = copies_of_levels(info, format);
-  gpu::run_once(device, [&](gpu::Commands cmd) {
-    gpu::image_barrier(cmd, image, nothing_yet, copied_to);
-    cmd->vkCmdCopyBufferToImage(cmd, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                static_cast<uint32_t>(copies.size()), copies.data());
-    gpu::image_barrier(cmd, image, copied_to, read_by_fragments);
-  });
+  uploader.image(image, texels, copies_of_levels(info, format));
   return image;
 }
 
@@ -97,12 +84,13 @@ uint32_t sampler_number(const pack::Texture& t) {
   return ((number(t.wrap_u) * 3 + number(t.wrap_v)) * 2 + number(t.mag_filter)) * 2 + number(t.min_filter);
 }
 
-std::vector<gpu::Owned<VkSampler>> make_samplers(const gpu::Device& device) {
+std::vector<gpu::Owned<VkSampler>> make_samplers(const gpu::Device& device, float anisotropy) {
+  const float most = device.samples_anisotropic ? std::min(anisotropy, device.limits.maxSamplerAnisotropy) : 1.0f;
   std::vector<gpu::Owned<VkSampler>> samplers;
   for (uint32_t i = 0; i < 36; ++i) {
     const bool min_linear = i % 2 == 1;
     const bool mag_linear = i / 2 % 2 == 1;
-    // Anisotropy is left out: lavapipe does it in software at many times the cost of a trilinear fetch.
+    const bool is_anisotropic = min_linear && mag_linear && most > 1.0f;
     samplers.push_back(gpu::make_sampler(
         device, {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                  .magFilter = mag_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST,
@@ -111,6 +99,8 @@ std::vector<gpu::Owned<VkSampler>> make_samplers(const gpu::Device& device) {
                  .addressModeU = address_mode(static_cast<pack::Wrap>(i / 12)),
                  .addressModeV = address_mode(static_cast<pack::Wrap>(i / 4 % 3)),
                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                 .anisotropyEnable = is_anisotropic,
+                 .maxAnisotropy = is_anisotropic ? most : 1.0f,
                  .maxLod = VK_LOD_CLAMP_NONE}));
   }
   return samplers;
@@ -192,13 +182,15 @@ std::vector<glm::vec3> uv_rows(const pack::View& pack) {
   return rows;
 }
 
-void upload_textures(const gpu::Device& device, const pack::View& pack, GpuScene& scene) {
+void upload_textures(const gpu::Device& device, gpu::Uploader& uploader, const pack::View& pack, float anisotropy,
+                     GpuScene& scene) {
   for (const pack::Image& image : pack.images)
-    scene.images.push_back(upload_image(device, image, pack.image_data.subspan(image.first_byte, image.size_bytes)));
+    scene.images.push_back(
+        upload_image(device, uploader, image, pack.image_data.subspan(image.first_byte, image.size_bytes)));
   const std::array<std::byte, 4> white{std::byte{255}, std::byte{255}, std::byte{255}, std::byte{255}};
   scene.images.push_back(upload_image(
-      device, {.width = 1, .height = 1, .level_count = 1, .format = pack::ImageFormat::rgba8_unorm}, white));
-  scene.samplers = make_samplers(device);
+      device, uploader, {.width = 1, .height = 1, .level_count = 1, .format = pack::ImageFormat::rgba8_unorm}, white));
+  scene.samplers = make_samplers(device, anisotropy);
   make_material_layout(device, static_cast<uint32_t>(pack.materials.size()), scene);
   for (const pack::Material& material : pack.materials)
     scene.material_sets.push_back(make_material_set(device, pack, scene, material));

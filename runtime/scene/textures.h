@@ -10,6 +10,7 @@ namespace chandelier {
 std::vector<glm::vec3> uv_rows(const pack::View& pack);
 
 /// Fills images, samplers and the material sets of `scene`. Throws gpu::Error.
-void upload_textures(const gpu::Device& device, const pack::View& pack, GpuScene& scene);
+void upload_textures(const gpu::Device& device, gpu::Uploader& uploader, const pack::View& pack, float anisotropy,
+                     GpuScene& scene);
 
 }  // namespace chandelier

@@ -58,7 +58,7 @@ void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const Gpu
   gpu::bind(cmd, pipeline,
             {gpu::storage(view), gpu::storage(lists.draws), gpu::storage(scene.instances),
              gpu::storage(scene.materials), gpu::storage(scene.uv_transforms)});
-  for (const DrawList& list : lists_by_material(scene)) {
+  for (const DrawList& list : lists.by_material) {
     cmd->vkCmdSetCullMode(cmd, scene.double_sided[list.material] ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     cmd->vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 1, 1,
                                  &scene.material_sets[list.material], 0, nullptr);

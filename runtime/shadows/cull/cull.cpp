@@ -10,24 +10,7 @@
 
 namespace chandelier {
 
-CullPipelines make_cull_pipelines(const gpu::Device& device) {
-  const gpu::LayoutInfo layout{.bindings = std::vector<VkDescriptorType>(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                               .push_bytes = sizeof(frame::CullConstants)};
-  return {gpu::make_compute_pipeline(device, layout, cull_none_comp),
-          gpu::make_compute_pipeline(device, layout, cull_light_frustum_comp)};
-}
-
-DrawLists make_draw_lists(const gpu::Device& device, const GpuScene& scene, uint64_t draws) {
-  static_assert(sizeof(frame::CasterDraw) == frame::caster_draw_stride);
-  const uint64_t bytes = draws * sizeof(frame::CasterDraw);
-  if (bytes > device.limits.maxStorageBufferRange)
-    throw gpu::Error("the scene has too many batches for this device (" + std::to_string(scene.batch_instance_count) +
-                     ")");
-  constexpr VkBufferUsageFlags usage =
-      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  return {gpu::make_buffer(device, bytes, usage, gpu::Memory::device),
-          gpu::make_buffer(device, 4 * (scene.runs.size() + 1), usage, gpu::Memory::device), draws};
-}
+namespace {
 
 std::vector<DrawList> lists_by_material(const GpuScene& scene) {
   std::vector<DrawList> lists;
@@ -47,6 +30,28 @@ std::vector<DrawList> lists_for_shadows(const GpuScene& scene) {
     lists.back().number = run + 1 - std::max(1u, scene.opaque_runs);
   }
   return lists;
+}
+
+}  // namespace
+
+CullPipelines make_cull_pipelines(const gpu::Device& device) {
+  const gpu::LayoutInfo layout{.bindings = std::vector<VkDescriptorType>(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                               .push_bytes = sizeof(frame::CullConstants)};
+  return {gpu::make_compute_pipeline(device, layout, cull_none_comp),
+          gpu::make_compute_pipeline(device, layout, cull_light_frustum_comp)};
+}
+
+DrawLists make_draw_lists(const gpu::Device& device, const GpuScene& scene, uint64_t draws) {
+  static_assert(sizeof(frame::CasterDraw) == frame::caster_draw_stride);
+  const uint64_t bytes = draws * sizeof(frame::CasterDraw);
+  if (bytes > device.limits.maxStorageBufferRange)
+    throw gpu::Error("the scene has too many batches for this device (" + std::to_string(scene.batch_instance_count) +
+                     ")");
+  constexpr VkBufferUsageFlags usage =
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  return {gpu::make_buffer(device, bytes, usage, gpu::Memory::device),
+          gpu::make_buffer(device, 4 * (scene.runs.size() + 1), usage, gpu::Memory::device), draws,
+          lists_by_material(scene), lists_for_shadows(scene)};
 }
 
 void record_cull(gpu::Commands cmd, const gpu::Device& device, const gpu::Pipeline& pipeline, const GpuScene& scene,

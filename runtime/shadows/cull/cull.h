@@ -14,15 +14,6 @@ struct CullPipelines {
 };
 CullPipelines make_cull_pipelines(const gpu::Device& device);
 
-/// CasterDraws in lists, one list per draw call: what cull writes and the draw calls read.
-struct DrawLists {
-  gpu::Buffer draws;   // frame CasterDraw; list l starts at (its first batch instance) * view_count
-  gpu::Buffer counts;  // one u32 per list
-  uint64_t capacity = 0;
-};
-/// Room for `draws` CasterDraws of this scene. Throws gpu::Error where the device cannot bind so many.
-DrawLists make_draw_lists(const gpu::Device& device, const GpuScene& scene, uint64_t draws);
-
 /// Where a list lies, and which material it draws.
 struct DrawList {
   uint32_t number;
@@ -30,17 +21,24 @@ struct DrawList {
   uint32_t batch_instances;
   uint32_t material;
 };
-/// Lists for shading: one per material.
-std::vector<DrawList> lists_by_material(const GpuScene& scene);
-/// Lists for shadows: number 0 has everything opaque (it may be empty), each masked material one of its own.
-std::vector<DrawList> lists_for_shadows(const GpuScene& scene);
+/// CasterDraws in lists, one list per draw call: what cull writes and the draw calls read.
+struct DrawLists {
+  gpu::Buffer draws;   // frame CasterDraw; list l starts at (its first batch instance) * view_count
+  gpu::Buffer counts;  // one u32 per list
+  uint64_t capacity = 0;
+  std::vector<DrawList> by_material;  // for shading: one per material
+  std::vector<DrawList>
+      for_shadows;  // number 0 has everything opaque (it may be empty), each masked material one of its own
+};
+/// Room for `draws` CasterDraws of this scene. Throws gpu::Error where the device cannot bind so many.
+DrawLists make_draw_lists(const gpu::Device& device, const GpuScene& scene, uint64_t draws);
 
 struct CullInput {
   const gpu::Buffer& views;     // frame ShadowView
   const gpu::Buffer& counters;  // frame CullCounters, one per round
   uint32_t first_view;
   uint32_t view_count;
-  uint32_t merged_runs;  // 1: lists_by_material; max(1, opaque runs): lists_for_shadows
+  uint32_t merged_runs;  // 1: by_material; max(1, opaque runs): for_shadows
   uint32_t round;
   bool keep_order = false;    // needs view_count 1
   bool casters_only = false;  // leaves out what throws no shadow

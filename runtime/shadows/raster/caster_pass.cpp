@@ -55,7 +55,7 @@ void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const G
   cmd->vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
   cmd->vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
 
-  const auto draw_lists = lists_for_shadows(scene);
+  const std::vector<DrawList>& draw_lists = lists.for_shadows;
   gpu::bind(cmd, pipelines.opaque, {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances)});
   draw_list(cmd, lists, draw_lists[0], view_count);
   if (draw_lists.size() > 1)

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame/frame_resources.h"
+
+#include <algorithm>
+
+#include "shading/tone_map.h"
+
+namespace chandelier {
+namespace {
+
+// The most of anything that a round of the frame needs.
+struct Needs {
+  uint32_t cubes = 1;
+  uint32_t views = 1;
+  uint64_t visibility_bytes = 0;
+};
+
+Needs needs_of(const FramePlan& plan) {
+  Needs needs;
+  for (const Round& round : plan.rounds) {
+    if (plan.recipe.filter != Filter::rays) needs.cubes = std::max(needs.cubes, round.map_count);
+    needs.views = std::max(needs.views, round.view_count);
+    needs.visibility_bytes = std::max(needs.visibility_bytes, round.visibility_bytes);
+  }
+  return needs;
+}
+
+void make_visibility(const gpu::Device& device, const RenderSettings& settings, uint64_t bytes, bool by_rays,
+                     FrameSlot& slot, gpu::Buffer& visibility) {
+  if (bytes > device.limits.maxStorageBufferRange)
+    throw gpu::Error("a picture of " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
+                     " pixels is too large for visibility textures on this device; use deliver inline");
+  const bool fits = visibility.handle && visibility.size_bytes >= bytes && by_rays == (visibility.mapped != nullptr);
+  if (fits) return;
+  const auto size =
+      std::min<VkDeviceSize>(gpu::grown(bytes, visibility.size_bytes), device.limits.maxStorageBufferRange);
+  gpu::Buffer made = gpu::make_buffer(device, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                      by_rays ? gpu::Memory::upload : gpu::Memory::device);
+  slot.retired.add(std::exchange(visibility, std::move(made)));
+}
+
+void make_store(const gpu::Device& device, const Recipe& recipe, uint32_t cubes, FrameSlot& slot,
+                FrameResources& resources) {
+  CubeArray& store = resources.store;
+  if (store.face_size_px == recipe.face_size_px && store.cube_count >= cubes) return;
+  if (store.face_size_px == recipe.face_size_px)
+    cubes = std::clamp(store.cube_count + store.cube_count / 2, cubes,
+                       std::max(cubes, cubes_within(device, recipe.face_size_px, recipe.shadow_budget_bytes)));
+  slot.retired.add(std::exchange(store, {}));
+  store = make_cube_array(device, recipe.face_size_px, cubes);
+  resources.store_is_new = true;
+}
+
+void make_counters(const gpu::Device& device, size_t rounds, FrameSlot& slot, gpu::Buffer& counters) {
+  const VkDeviceSize bytes = (rounds + 1) * sizeof(frame::CullCounters);
+  constexpr VkBufferUsageFlags usage =
+      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+  if (!counters.handle || counters.size_bytes < bytes) {
+    gpu::Buffer made = gpu::make_buffer(device, gpu::grown(bytes, counters.size_bytes), usage, gpu::Memory::device);
+    slot.retired.add(std::exchange(counters, std::move(made)));
+  }
+  if (!slot.counters.handle || slot.counters.size_bytes < bytes)  // the slot's frame has finished
+    slot.counters = gpu::make_buffer(device, gpu::grown(bytes, slot.counters.size_bytes),
+                                     VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
+}
+
+}  // namespace
+
+FrameSlot::FrameSlot(const gpu::Device& device)
+    : uploads(device),
+      timers(device),
+      exposure(gpu::make_buffer(device, sizeof(frame::LuminanceSum), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                gpu::Memory::readback)) {}
+
+void FrameSlot::reset() {
+  uploads.reset();
+  retired.clear();
+}
+
+size_t light_count(const FramePlan& plan) {
+  return plan.list.lights.size() + plan.list.shadowless.size();
+}
+
+void make_room(const gpu::Device& device, const GpuScene& scene, const RenderSettings& settings, const FramePlan& plan,
+               FrameSlot& slot, FrameResources& resources) {
+  Targets& targets = resources.targets;
+  if (targets.width != settings.width || targets.height != settings.height) {
+    slot.retired.add(std::exchange(targets, {}));
+    slot.retired.add(std::exchange(resources.luminance_sums, {}));
+    targets = make_targets(device, settings.width, settings.height);
+    resources.luminance_sums = make_luminance_sums(device, settings.width, settings.height);
+  }
+  const Needs needs = needs_of(plan);
+  if (plan.recipe.lookup == Lookup::tiles)
+    make_tile_lists(device, settings.width, settings.height, light_count(plan), slot.retired, resources.tiles);
+  make_visibility(device, settings, needs.visibility_bytes, plan.recipe.filter == Filter::rays, slot,
+                  resources.visibility);
+  make_store(device, settings.recipe, needs.cubes, slot, resources);
+  const uint64_t draws = uint64_t{needs.views} * scene.batch_instance_count;
+  if (resources.shadow_draws.capacity < draws || !resources.shadow_draws.draws.handle)
+    slot.retired.add(std::exchange(resources.shadow_draws, make_draw_lists(device, scene, draws)));
+  make_counters(device, plan.rounds.size(), slot, resources.counters);
+}
+
+}  // namespace chandelier
