@@ -5,18 +5,20 @@
 
   generate.py --schema pack.xml --out DIR              write everything the build needs into DIR
   generate.py --schema pack.xml --out DIR --list       only name the files that would be written, one a line
-  generate.py --schema pack.xml --format FORMAT.md     write the format page
-  generate.py --schema pack.xml --check-format FORMAT.md   fail unless that page is current
+  generate.py --schema pack.xml --page FORMAT.md       write the page for readers: of frame.xml it is RECIPES.md
+  generate.py --schema pack.xml --check-page FORMAT.md     fail unless that page is current
 """
 
 import argparse
 import hashlib
-import re
 import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import jinja2
+
+from recipe_table import RecipeTable
+from schema_page import CAMEL, SNAKE, SchemaError, check_attributes, check_name, comment, upper
 
 # name: C++ type, GLSL type, numpy code, bytes, alignment, components
 TYPES = {
@@ -31,55 +33,6 @@ TYPES = {
     "string": ("StringRef", "StringRef", None, 8, 4, 1),
 }
 FLOATS = {"f32": "f32", "vec2": "f32", "vec3": "f32", "vec4": "f32", "dvec3": "f64"}  # type: that of a component
-ATTRIBUTES = {
-    "schema": {"name", "namespace", "version"},
-    "constant": {"name", "type", "value"},
-    "enum": {"name"},
-    "value": {"name", "value"},
-    "record": {"name", "gpu"},
-    "field": {"name", "type", "count", "unit", "min", "max", "enum", "index", "optional", "run", "length"},
-    "section": {"kind", "name", "record", "type", "same_count", "min_count", "max_count"},
-}
-# Words that C++, GLSL or Python keep for themselves and that a schema might want.
-RESERVED = set(
-    "active and asm auto bool break case char class common const default delete do double else enum explicit extern "
-    "false filter fixed flat float for from goto half if import in inline input int is lambda length long mutable namespace "
-    "new not operator or out output partition pass private public register resource return sample sampler short "
-    "signed sizeof static struct switch template this true typedef union unsigned using virtual void volatile while "
-    "with yield".split())
-
-
-class SchemaError(Exception):
-    pass
-
-
-def comment(element):
-    """The element's own text on one line."""
-    return " ".join((element.text or "").split())
-
-
-def check_name(name, pattern, place):
-    if not re.fullmatch(pattern, name):
-        raise SchemaError(f"{place}: the name does not match {pattern} ({name})")
-    if name in RESERVED:
-        raise SchemaError(f"{place}: the name is a reserved word ({name})")
-    return name
-
-
-SNAKE, CAMEL = r"[a-z][a-z0-9_]*", r"[A-Z][A-Za-z0-9]*"
-
-
-def check_attributes(element, place):
-    unknown = set(element.attrib) - ATTRIBUTES[element.tag]
-    if unknown:
-        raise SchemaError(f"{place}: unknown attribute ({', '.join(sorted(unknown))})")
-
-
-def upper(name):
-    """LightType -> LIGHT_TYPE, none -> NONE."""
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).upper()
-
-
 class Field:
     def __init__(self, element, record):
         self.name = check_name(element.get("name"), SNAKE, record)
@@ -286,6 +239,7 @@ class Schema:
         self.records = list(self.by_name.values())
         self.gpu_records = [r for r in self.records if r.gpu]
         self.sections = [Section(e, self.by_name) for e in root.findall("section")]
+        self.recipe = RecipeTable(root)
         self.check_references()
         for section in self.sections:
             if section.record:
@@ -333,6 +287,7 @@ def environment():
     env = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), trim_blocks=True,
                              lstrip_blocks=True, keep_trailing_newline=True, undefined=jinja2.StrictUndefined)
     env.filters["upper_name"] = upper
+    env.filters["cell"] = lambda text: text.replace("|", r"\|")  # of a table in Markdown
     return env
 
 
@@ -343,6 +298,8 @@ def outputs(schema):
              (f"{name}_echo_list.h", "echo_list.h.j2", None)]
     if schema.sections:
         files += [(f"{name}_schema.cpp", "schema.cpp.j2", None), (f"{name}_schema.py", "schema.py.j2", None)]
+    if schema.recipe.stages:
+        files.append(("recipe_schema.h", "recipe.h.j2", None))
     return files + [(f"echo/{r.name}.comp", "echo.comp.j2", r) for r in schema.gpu_records]
 
 
@@ -351,11 +308,11 @@ def main():
     parser.add_argument("--schema", required=True, type=Path, metavar="FILE.xml")
     parser.add_argument("--out", type=Path, metavar="DIR")
     parser.add_argument("--list", action="store_true", help="name the files, write nothing")
-    parser.add_argument("--format", type=Path, metavar="FORMAT.md")
-    parser.add_argument("--check-format", type=Path, metavar="FORMAT.md")
+    parser.add_argument("--page", type=Path, metavar="PAGE.md")
+    parser.add_argument("--check-page", type=Path, metavar="PAGE.md")
     options = parser.parse_args()
-    if not (options.out or options.format or options.check_format):
-        parser.error("one of --out, --format, --check-format is needed")
+    if not (options.out or options.page or options.check_page):
+        parser.error("one of --out, --page, --check-page is needed")
     schema, env = Schema(options.schema), environment()
     if options.out:
         for name, template, record in outputs(schema):
@@ -365,13 +322,13 @@ def main():
                 continue
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(env.get_template(template).render(s=schema, record=record), encoding="utf-8")
-    if options.format or options.check_format:
-        page = env.get_template("FORMAT.md.j2").render(s=schema, alignment=schema.constant("section_alignment"))
-        if options.format:
-            options.format.write_text(page, encoding="utf-8")
-        elif options.check_format.read_text(encoding="utf-8") != page:
-            raise SchemaError(f"{options.check_format}: not what {schema.file} and the template say; "
-                              f"run generate.py --schema {options.schema} --format {options.check_format}")
+    if options.page or options.check_page:
+        page = env.get_template("FORMAT.md.j2" if schema.sections else "RECIPES.md.j2").render(s=schema)
+        if options.page:
+            options.page.write_text(page, encoding="utf-8")
+        elif options.check_page.read_text(encoding="utf-8") != page:
+            raise SchemaError(f"{options.check_page}: not what {schema.file} and the template say; "
+                              f"run generate.py --schema {options.schema} --page {options.check_page}")
 
 
 if __name__ == "__main__":

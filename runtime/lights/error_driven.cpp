@@ -43,7 +43,7 @@ void ErrorDriven::look(std::span<const uint32_t> in_view, const SampledView& vie
   judge_.emplace(scene_, in_view_, view.camera, view.aspect, sample_grid(in_view.size(), view));
 }
 
-void ErrorDriven::climb(const SampledView& view, lights::DynamicLights dynamic_lights,
+void ErrorDriven::climb(const SampledView& view, DynamicLights dynamic_lights,
                         std::span<const uint32_t> group_centers) {
   if (ladder_ && dynamic_lights_ == dynamic_lights) return;
   ladder_.reset();

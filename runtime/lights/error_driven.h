@@ -47,15 +47,15 @@ class ErrorDriven {
 
  private:
   void look(std::span<const uint32_t> in_view, const SampledView& view);
-  void climb(const SampledView& view, lights::DynamicLights dynamic_lights, std::span<const uint32_t> group_centers);
+  void climb(const SampledView& view, DynamicLights dynamic_lights, std::span<const uint32_t> group_centers);
   std::vector<MapMember> within(double most_rmse, uint32_t most_maps, const Recipe& recipe) const;
 
   SampledScene scene_;
   std::vector<uint32_t> in_view_;
   SampledView view_;
-  lights::DynamicLights dynamic_lights_ = lights::DynamicLights::cluster;  // the ladder's
-  std::optional<LightSamples> judge_;                                      // for estimates
-  std::optional<LightSamples> samples_;                                    // other points, for the search
+  DynamicLights dynamic_lights_ = DynamicLights::cluster;  // the ladder's
+  std::optional<LightSamples> judge_;                      // for estimates
+  std::optional<LightSamples> samples_;                    // other points, for the search
   std::optional<ErrorLadder> ladder_;
 };
 

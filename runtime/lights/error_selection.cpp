@@ -23,7 +23,7 @@ constexpr uint32_t exchange_tries = 3;    // centres that are tried as new ones,
 // An assignment of lights to centres, and the picture that it makes: one luminance for each point.
 class Search {
  public:
-  Search(const LightSamples& samples, lights::DynamicLights dynamic_lights, std::span<const uint32_t> group_centers);
+  Search(const LightSamples& samples, DynamicLights dynamic_lights, std::span<const uint32_t> group_centers);
 
   uint32_t map_count() const { return map_count_; }
   double error() const { return error_; }
@@ -51,7 +51,7 @@ class Search {
     uint32_t map_count;
   };
 
-  void order_neighbours(lights::DynamicLights dynamic_lights);
+  void order_neighbours(DynamicLights dynamic_lights);
   void join_groups(std::span<const uint32_t> group_centers);
   bool is_grouped(uint32_t light) const { return samples_.light(light).group != 0; }
   double change(uint32_t light, uint32_t from, uint32_t to) const;
@@ -79,8 +79,7 @@ class Search {
   std::priority_queue<Cost, std::vector<Cost>, std::greater<>> costs_;  // of dropping a centre, as last seen
 };
 
-Search::Search(const LightSamples& samples, lights::DynamicLights dynamic_lights,
-               std::span<const uint32_t> group_centers)
+Search::Search(const LightSamples& samples, DynamicLights dynamic_lights, std::span<const uint32_t> group_centers)
     : samples_(samples), map_count_(static_cast<uint32_t>(samples.lights().size())) {
   const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);
   contributions_.resize(map_count_);
@@ -112,10 +111,9 @@ void Search::join_groups(std::span<const uint32_t> group_centers) {
 
 // Nearest first, directional lights by their directions. A light that keeps its own map, or its group's, has none, and
 // is nobody's.
-void Search::order_neighbours(lights::DynamicLights dynamic_lights) {
+void Search::order_neighbours(DynamicLights dynamic_lights) {
   const auto keeps_own = [&](const pack::Light& light) {
-    return light.group != 0 || light.unclustered != 0 ||
-           (light.dynamic != 0 && dynamic_lights == lights::DynamicLights::own);
+    return light.group != 0 || light.unclustered != 0 || (light.dynamic != 0 && dynamic_lights == DynamicLights::own);
   };
   neighbours_.resize(map_count_);
   for (uint32_t light = 0; light < map_count_; ++light) {
@@ -276,7 +274,7 @@ void Search::exchange() {
 
 }  // namespace
 
-ErrorLadder::ErrorLadder(const LightSamples& samples, lights::DynamicLights dynamic_lights,
+ErrorLadder::ErrorLadder(const LightSamples& samples, DynamicLights dynamic_lights,
                          std::span<const uint32_t> group_centers)
     : samples_(samples) {
   Search search(samples, dynamic_lights, group_centers);

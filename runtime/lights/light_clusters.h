@@ -9,18 +9,9 @@
 #include <vector>
 
 #include "lights/cluster_metric.h"
+#include "recipe_schema.h"
 
 namespace chandelier::lights {
-
-/// d_min of a centre at distance |C| from the camera (README.md of this folder says why there are three).
-enum class DistanceScaling : uint32_t {
-  grow,           // d_init * (1 + |C| / z_far): the paper's text, Figure 3 and Table 1
-  paper_formula,  // d_init * max(0, 1 - |C| / z_far): the paper's equation as printed
-  none,           // d_init: stable under a moving camera
-};
-
-/// Whether lights that move are clustered like others, or each keeps a shadow map of its own (LightCluster §5.6).
-enum class DynamicLights : uint32_t { cluster, own };
 
 /// Of `previous_centers`: the light had none.
 constexpr uint32_t no_center = 0xFFFFFFFF;
@@ -29,7 +20,7 @@ struct ClusterSettings {
   glm::vec3 camera_ws{0.0f};
   float d_init_m = 0.5f;
   float z_far_m = 30.0f;
-  DistanceScaling scaling = DistanceScaling::grow;
+  DistanceScaling scaling = DistanceScaling::grow;  // README.md of this folder says why there are three
   DynamicLights dynamic_lights = DynamicLights::cluster;
   float stability = 0.0f;  // 0 to below 1: how much a light clings to what it was a frame ago; 0 not at all
   std::span<const uint32_t> previous_centers;  // of each light its centre a frame ago, or no_center; or nothing at all

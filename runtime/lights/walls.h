@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "lights/occupancy.h"
-#include "lights/wall_test.h"
 #include "rays/pack_rays.h"
+#include "recipe_schema.h"
 
 namespace chandelier::lights {
 

@@ -5,8 +5,6 @@
 #define CHANDELIER_LOOKUP_GLSL
 #include "shading/strips.glsl"
 
-const uint LOOKUP_ALL = 0u, LOOKUP_TILES = 1u;  // frame/recipe.h
-
 // The first light from `light` on that may reach this group's tile, or light_end.
 uint next_light(uint light) {
   if (lookup_answer == LOOKUP_ALL) return light;

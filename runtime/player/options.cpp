@@ -22,13 +22,6 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Leaves the value as it is where nothing was typed.
-template <typename Enum>
-void read_named(const std::string& typed, std::span<const std::string_view> names, Enum& value) {
-  const auto name = std::find(names.begin(), names.end(), typed);
-  if (name != names.end()) value = static_cast<Enum>(name - names.begin());
-}
-
 template <typename T>
 bool whole_number(std::string_view text, T& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -73,6 +66,24 @@ void read_camera(const std::string& text, Options& options) {
         text));
 }
 
+// What is typed has been checked against the setting's answers or limits.
+template <typename Value>
+void read_setting(const Setting& setting, const std::string& text, Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    set_by_name(value, text);
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    if (!CLI::detail::lexical_cast(text, value))
+      throw UsageError(fmt::format("--{}: must be a whole number {} ({})", setting.option, setting.range_text, text));
+    value *= static_cast<Value>(setting.scale);
+  }
+}
+
+bool is_typed(const Typed& typed, std::string_view option) {
+  for (std::size_t i = 0; i < typed.settings.size(); ++i)
+    if (recipe_settings()[i].option == option) return !typed.settings[i].empty();
+  return false;
+}
+
 NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
   const auto all = presets();
   const auto preset = std::find_if(all.begin(), all.end(), [&](const Preset& p) { return p.name == preset_name; });
@@ -82,16 +93,9 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
   Recipe recipe = preset->recipe;
   for (std::size_t i = 0; i < typed.answers.size(); ++i)
     if (!typed.answers[i].empty()) set_answer(recipe, i, typed.answers[i]);
-  if (typed.d_init) recipe.d_init_m = *typed.d_init;
-  if (typed.z_far) recipe.z_far_m = *typed.z_far;
-  if (typed.stability) recipe.stability = *typed.stability;
-  if (typed.reference_share) recipe.reference_share = *typed.reference_share;
-  if (typed.face_size) recipe.face_size_px = *typed.face_size;
-  if (typed.shadow_budget) recipe.shadow_budget_bytes = uint64_t{*typed.shadow_budget} << 20;
-  read_named(typed.distance_scaling, distance_scaling_names(), recipe.distance_scaling);
-  read_named(typed.dynamic_lights, dynamic_lights_names(), recipe.dynamic_lights);
-  read_named(typed.area_radius, area_radius_names(), recipe.area_radius);
-  read_named(typed.walls, wall_test_names(), recipe.walls);
+  for (std::size_t i = 0; i < typed.settings.size(); ++i)
+    if (!typed.settings[i].empty())
+      with_setting(recipe, i, [&](auto& value) { read_setting(recipe_settings()[i], typed.settings[i], value); });
   if (const auto reason = refusal(recipe)) throw UsageError(fmt::format("preset {}: {}", preset_name, *reason));
 #ifndef CHANDELIER_EMBREE
   if (recipe.filter == Filter::rays)
@@ -117,11 +121,12 @@ void read_budget(const Typed& typed, Options& options) {
   const std::string_view option = typed.max_shadow_maps    ? "--max-shadow-maps"
                                   : typed.max_shadow_bytes ? "--max-shadow-bytes"
                                                            : "--max-error";
-  options.budget.d_init_is_least = typed.d_init.has_value();
-  if (typed.d_init && typed.max_error)
+  options.budget.d_init_is_least = is_typed(typed, "d-init");
+  if (options.budget.d_init_is_least && typed.max_error)
     throw UsageError("--max-error: cannot be used with --d-init, whose place it takes");
-  if (typed.d_init && std::any_of(options.recipes.begin(), options.recipes.end(),
-                                  [](const NamedRecipe& each) { return each.recipe.select == Select::error_driven; }))
+  if (options.budget.d_init_is_least &&
+      std::any_of(options.recipes.begin(), options.recipes.end(),
+                  [](const NamedRecipe& each) { return each.recipe.select == Select::error_driven; }))
     throw UsageError(fmt::format("{}: cannot be used with --d-init where lights are selected by error", option));
   if (std::none_of(options.recipes.begin(), options.recipes.end(),
                    [](const NamedRecipe& each) { return each.recipe.select != Select::per_light; }))

@@ -53,22 +53,26 @@ Json camera_json(const NamedCamera& named) {
   return json;
 }
 
+template <typename Value>
+void put(Json& json, const std::string& name, const Value& value) {
+  if constexpr (std::is_enum_v<Value>)
+    json[name] = name_of(value);
+  else
+    json[name] = value;
+}
+
+template <typename Value>
+void put(Json& json, const std::string& name, const std::optional<Value>& value) {
+  if (value) json[name] = *value;
+}
+
 Json recipe_json(const Recipe& recipe) {
   Json json = Json::object();
   const auto stages = stage_choices();
   for (std::size_t i = 0; i < stages.size(); ++i) json[std::string(stages[i].stage)] = answer(recipe, i);
-  json["settings"] = {{"d_init_m", recipe.d_init_m},
-                      {"z_far_m", recipe.z_far_m},
-                      {"distance_scaling", distance_scaling_names()[static_cast<std::size_t>(recipe.distance_scaling)]},
-                      {"dynamic_lights", dynamic_lights_names()[static_cast<std::size_t>(recipe.dynamic_lights)]},
-                      {"area_radius", area_radius_names()[static_cast<std::size_t>(recipe.area_radius)]},
-                      {"stability", recipe.stability},
-                      {"walls", wall_test_names()[static_cast<std::size_t>(recipe.walls)]},
-                      {"reference_share", recipe.reference_share},
-                      {"face_size_px", recipe.face_size_px},
-                      {"shadow_budget_bytes", recipe.shadow_budget_bytes}};
-  if (recipe.max_maps) json["settings"]["max_maps"] = *recipe.max_maps;
-  if (recipe.max_rmse) json["settings"]["max_rmse"] = *recipe.max_rmse;
+  Json& values = json["settings"] = Json::object();
+  for (std::size_t i = 0; i < recipe_settings().size(); ++i)
+    with_setting(recipe, i, [&](const auto& value) { put(values, std::string(recipe_settings()[i].name), value); });
   return json;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options of chandelier-play. Stages and their answers come from stage_choices(), so a new answer needs no change here.
+// Options of chandelier-play. Those of a recipe come from the table in schemas/frame.xml: a new one needs no change
+// here.
 #include "player/typed_options.h"
 
 #include <fmt/format.h>
@@ -38,20 +39,37 @@ CLI::Validator one_of(std::vector<std::string> names) {
       "");
 }
 
-std::vector<std::string> strings(std::span<const std::string_view> views) {
-  return {views.begin(), views.end()};
+std::vector<std::string> names_of(std::span<const Answer> answers) {
+  std::vector<std::string> names;
+  for (const Answer& each : answers) names.emplace_back(each.name);
+  return names;
+}
+
+// What the answers to each stage's question mean, and those of settings that have names.
+std::string answers_text() {
+  std::string text;
+  const auto add = [&](std::string_view option, std::string_view question, std::span<const Answer> answers) {
+    text += fmt::format("\n--{}: {}\n", option, question);
+    for (const Answer& each : answers) text += fmt::format("  {:<22}{}\n", each.name, each.meaning);
+  };
+  for (const StageChoices& stage : stage_choices()) add(stage.stage, stage.question, stage.answers);
+  for (const Setting& setting : recipe_settings())
+    if (!setting.answers.empty()) add(setting.option, setting.meaning, setting.answers);
+  return text;
 }
 
 std::string footer() {
   std::string text = "Presets:\n";
-  for (const Preset& preset : presets()) text += fmt::format("  {:<18}{}\n", preset.name, preset.description);
+  for (const Preset& preset : presets()) text += fmt::format("  {:<22}{}\n", preset.name, preset.description);
+  text += answers_text();
 #ifndef CHANDELIER_PORTABLE
   text += "\nIn the window:\n";
   for (const WindowKey& key : window_keys) text += fmt::format("  {:<22}{}\n", key.name, key.meaning);
 #endif
   text +=
-      "\nA window shows whatever pack takes its file's place, from where one has flown to. What cannot be shown is\n"
-      "told, and the older one stays.\n"
+      "\nA window shows the new pack when the file is replaced, and keeps the camera where it is. If the new pack "
+      "cannot\n"
+      "be shown, an error says why and the old one stays.\n"
       "\nExamples:\n"
       "  chandelier-play scene.chandelier                       fly through it in a window\n"
       "  chandelier-play scene.chandelier --output frame.png    one picture, no display needed\n"
@@ -128,18 +146,37 @@ void declare_device(CLI::App& app, Typed& typed) {
       ->group("Device");
 }
 
-constexpr std::string_view settings_group = "Settings (each overrides the preset)";
+CLI::Validator allowed_value(const Setting& setting) {
+  if (!setting.answers.empty()) return one_of(names_of(setting.answers));
+  return CLI::Validator(
+      [&setting](const std::string& text) {
+        double value = 0.0;
+        const bool is_number = CLI::detail::lexical_cast(text, value);
+        // "nan" compares false with everything, so ask for what is right, not for what is wrong.
+        if (is_number && value >= setting.typed_least && value <= setting.typed_most) return std::string();
+        return fmt::format("must be {} ({})", setting.range_text, text);
+      },
+      "");
+}
 
-void declare_named(CLI::App& app, const std::string& option, std::string_view meaning,
-                   std::span<const std::string_view> names, std::size_t default_name, std::string& typed) {
-  app.add_option(option, typed, fmt::format("{}: {} [{}]", meaning, fmt::join(names, ", "), names[default_name]))
-      ->type_name("NAME")
-      ->check(one_of(strings(names)))
-      ->group(std::string(settings_group));
+void declare_settings(CLI::App& app, Typed& typed) {
+  const auto settings = recipe_settings();
+  typed.settings.resize(settings.size());
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const Setting& setting = settings[i];
+    if (setting.option.empty()) continue;
+    std::string help(setting.meaning);
+    if (!setting.answers.empty()) help += fmt::format(": {}", fmt::join(names_of(setting.answers), ", "));
+    app.add_option(
+           fmt::format("--{}", setting.option), typed.settings[i],
+           fmt::format("{} [{}{}{}]", help, setting.default_text, setting.unit.empty() ? "" : " ", setting.unit))
+        ->type_name(std::string(setting.placeholder))
+        ->check(allowed_value(setting))
+        ->group("Settings (each overrides the preset)");
+  }
 }
 
 void declare_recipe(CLI::App& app, Typed& typed) {
-  const Recipe defaults;
   app.add_option("--preset", typed.preset,
                  fmt::format("{}, see below [{}]", fmt::join(preset_names(), ", "), presets().front().name))
       ->type_name("NAME")
@@ -148,55 +185,13 @@ void declare_recipe(CLI::App& app, Typed& typed) {
   const auto stages = stage_choices();
   typed.answers.resize(stages.size());
   for (std::size_t i = 0; i < stages.size(); ++i) {
-    const auto answers = strings(stages[i].answers);
+    const auto answers = names_of(stages[i].answers);
     app.add_option(fmt::format("--{}", stages[i].stage), typed.answers[i],
                    fmt::format("{} {} [the preset's]", stages[i].question, fmt::join(answers, ", ")))
         ->type_name("ANSWER")
         ->check(one_of(answers))
         ->group("Recipe (each overrides the preset)");
   }
-  const std::string group(settings_group);
-  app.add_option("--d-init", typed.d_init,
-                 fmt::format("Light clusters: d_min at the camera, metres [{}]", defaults.d_init_m))
-      ->type_name("M")
-      ->check(number_between(0.0, 1e6))
-      ->group(group);
-  app.add_option("--z-far", typed.z_far,
-                 fmt::format("Light clusters: distance that scales d_min, metres [{}]", defaults.z_far_m))
-      ->type_name("M")
-      ->check(number_between(1e-3, 1e6))
-      ->group(group);
-  declare_named(app, "--distance-scaling", "Light clusters: how d_min follows distance", distance_scaling_names(),
-                static_cast<std::size_t>(defaults.distance_scaling), typed.distance_scaling);
-  app.add_option(
-         "--stability", typed.stability,
-         fmt::format("Light clusters: how much lights cling to what they were a frame ago [{}]", defaults.stability))
-      ->type_name("S")
-      ->check(number_between(0.0, 0.999))
-      ->group(group);
-  declare_named(app, "--dynamic-lights", "Light clusters: whether lights that move share maps or have their own",
-                dynamic_lights_names(), static_cast<std::size_t>(defaults.dynamic_lights), typed.dynamic_lights);
-  declare_named(app, "--area-radius", "Light clusters: radius of the area light that stands for one",
-                area_radius_names(), static_cast<std::size_t>(defaults.area_radius), typed.area_radius);
-  declare_named(app, "--walls", "Light clusters: what keeps them from reaching through walls", wall_test_names(),
-                static_cast<std::size_t>(defaults.walls), typed.walls);
-  app.add_option("--reference-share", typed.reference_share,
-                 fmt::format("From so many light clusters per light on, the reference is drawn: one hard map each. "
-                             "Above 1: never [{}]",
-                             defaults.reference_share))
-      ->type_name("R")
-      ->check(number_between(1e-3, 1e6))
-      ->group(group);
-  app.add_option("--face-size", typed.face_size,
-                 fmt::format("Width of one face of a cube shadow map, texels [{}]", defaults.face_size_px))
-      ->type_name("N")
-      ->check(number_between(1, kLargestPicture))
-      ->group(group);
-  app.add_option("--shadow-budget", typed.shadow_budget,
-                 fmt::format("Shadow-map depth held at a time, MiB [{}]", defaults.shadow_budget_bytes >> 20))
-      ->type_name("MIB")
-      ->check(number_between(1, 1 << 20))
-      ->group(group);
 }
 
 void declare_budget(CLI::App& app, Typed& typed) {
@@ -233,6 +228,7 @@ void declare_options(CLI::App& app, Typed& typed) {
   declare_view(app, typed);
   declare_device(app, typed);
   declare_recipe(app, typed);
+  declare_settings(app, typed);
   declare_budget(app, typed);
 }
 

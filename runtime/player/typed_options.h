@@ -22,10 +22,10 @@ struct Typed {
   bool list_devices = false;
   bool predict = false;
   bool validation = false;
-  std::vector<std::string> answers;  // one per stage; empty where not given
-  std::optional<float> d_init, z_far, reference_share, stability, max_error;
-  std::string distance_scaling, dynamic_lights, area_radius, walls;
-  std::optional<uint32_t> face_size, shadow_budget, max_shadow_maps, max_shadow_bytes;
+  std::vector<std::string> answers;   // one per stage; empty where not given
+  std::vector<std::string> settings;  // one of recipe_settings() each; empty where not given
+  std::optional<float> max_error;
+  std::optional<uint32_t> max_shadow_maps, max_shadow_bytes;
   float ambient = 0.0f;
 };
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "frame/recipe.h"
 
@@ -181,8 +182,15 @@ void read_lights(const Json& json, Request& request) {
   }
 }
 
+// The answers up to that one, which are those that the C interface knows.
+template <typename Choice>
+std::vector<std::string_view> names_up_to(Choice last) {
+  std::vector<std::string_view> names;
+  for (const Answer& each : answers_of(last).first(static_cast<std::size_t>(last) + 1)) names.push_back(each.name);
+  return names;
+}
+
 void read_settings(const Json& json, ChandelierPreviewSettings& settings) {
-  constexpr std::string_view selects[]{"per-light", "light-clusters"}, filters[]{"hard", "pcf", "pcss"};
   constexpr std::string_view known[]{
       "select",  "filter",          "distance_scaling",   "dynamic_lights",  "face_size_px",    "d_init_m",
       "z_far_m", "reference_share", "range_threshold_lx", "max_shadow_maps", "max_shadow_bytes"};
@@ -198,10 +206,10 @@ void read_settings(const Json& json, ChandelierPreviewSettings& settings) {
     if (json.contains(key))
       out = static_cast<std::remove_reference_t<decltype(out)>>(whole(json[key], inside("settings", key), 0, most));
   };
-  choose("select", selects, settings.select);
-  choose("filter", filters, settings.filter);
-  choose("distance_scaling", distance_scaling_names(), settings.distance_scaling);
-  choose("dynamic_lights", dynamic_lights_names(), settings.dynamic_lights);
+  choose("select", names_up_to(Select::light_clusters), settings.select);
+  choose("filter", names_up_to(Filter::pcss), settings.filter);
+  choose("distance_scaling", names_up_to(DistanceScaling::none), settings.distance_scaling);
+  choose("dynamic_lights", names_up_to(DynamicLights::own), settings.dynamic_lights);
   measure("d_init_m", settings.d_init_m);
   measure("z_far_m", settings.z_far_m);
   measure("reference_share", settings.reference_share);

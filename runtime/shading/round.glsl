@@ -13,8 +13,6 @@ layout(constant_id = 0) const uint filter_answer = 0u;
 layout(constant_id = 1) const uint shade_answer = 0u;
 layout(constant_id = 2) const uint lookup_answer = 0u;
 layout(constant_id = 3) const uint deliver_answer = 0u;
-const uint SHADE_GGX = 0u, SHADE_LAMBERT = 1u;  // frame/recipe.h
-const uint DELIVER_INLINE = 0u, DELIVER_TEXTURES = 1u;
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, scalar) readonly buffer View { ViewConstants view; };

@@ -15,7 +15,7 @@ endif()
 
 add_library(chandelier_options INTERFACE)
 # Vulkan's structs are filled by naming what matters; the rest is zero.
-target_compile_options(chandelier_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion
+target_compile_options(chandelier_options INTERFACE -Wall -Wextra -Werror=switch -Wshadow -Wconversion -Wno-sign-conversion
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                        -Wno-missing-field-initializers)
 if(CHANDELIER_SANITIZE)

@@ -117,7 +117,7 @@ def test_columns_are_read_where_they_lie_and_copied_only_where_they_cannot_be():
 
 @pytest.mark.parametrize("settings, text", [
     (clusters.Settings(filter="soft"), "filter: is none of hard, pcf, pcss (soft)"),
-    (clusters.Settings(d_init_m=-1), "d-init must be a distance of 0 m or more"),
+    (clusters.Settings(d_init_m=-1), "d-init must be from 0 to 1000000 m"),
     (clusters.Settings(filter="hard"), "select light-clusters with filter hard"),
     (clusters.Settings(face_size_px=7), "face-size must be from 16 to 16384 texels")])
 def test_bad_settings_are_named(core, settings, text):

@@ -27,7 +27,7 @@ constexpr float tolerance = 1e-3f;  // of the search's table, as against estimat
 constexpr double rounding = 1e-6;
 
 ErrorLadder ladder_of(const Sampled& sampled) {
-  return ErrorLadder(*sampled.samples, lights::DynamicLights::cluster);
+  return ErrorLadder(*sampled.samples, DynamicLights::cluster);
 }
 
 std::set<uint32_t> centers_of(const std::vector<MapMember>& members) {
@@ -162,7 +162,7 @@ TEST(ErrorDrivenTest, AGroupSharesOneMapAmongItself) {
   test::Scene scene = divided_floor();
   scene.lights[0].group = scene.lights[3].group = 1;  // on both sides
   const Sampled s(scene);
-  const ErrorLadder ladder(*s.samples, lights::DynamicLights::cluster, std::vector<uint32_t>{3, 1, 2, 3});
+  const ErrorLadder ladder(*s.samples, DynamicLights::cluster, std::vector<uint32_t>{3, 1, 2, 3});
   EXPECT_EQ(ladder.fewest_maps(), 2u);
   EXPECT_LE(centers_of(ladder.with_at_most(4)).size(), 3u);
   for (const uint32_t maps : {2, 3, 4})

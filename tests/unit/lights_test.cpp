@@ -186,7 +186,7 @@ TEST(LightListTest, ClustersOfOneLightEachAreTheReferencesList) {
 
 TEST(RecipeTest, EveryAnswerCanBeSetByItsName) {
   for (size_t stage = 0; stage < stage_choices().size(); ++stage) {
-    for (const std::string_view name : stage_choices()[stage].answers) {
+    for (const auto& [name, meaning] : stage_choices()[stage].answers) {
       Recipe recipe;
       EXPECT_TRUE(set_answer(recipe, stage, name)) << name;
       EXPECT_EQ(answer(recipe, stage), name);
@@ -194,6 +194,18 @@ TEST(RecipeTest, EveryAnswerCanBeSetByItsName) {
     Recipe recipe;
     EXPECT_FALSE(set_answer(recipe, stage, "no such answer"));
   }
+}
+
+TEST(RecipeTest, ValuesWithoutANameAreRefused) {
+  for (size_t stage = 0; stage < stage_choices().size(); ++stage) {
+    Recipe recipe;
+    with_answer(recipe, stage, [](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(77); });
+    EXPECT_EQ(refusal(recipe), std::string(stage_choices()[stage].stage) + ": there is no answer of number 77");
+    EXPECT_EQ(answer(recipe, stage), "?");
+  }
+  Recipe recipe;
+  recipe.walls = static_cast<WallTest>(3);
+  EXPECT_EQ(refusal(recipe), "walls: there is no answer of number 3");
 }
 
 TEST(RecipeTest, PresetsCanBeRendered) {

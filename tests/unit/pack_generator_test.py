@@ -47,6 +47,33 @@ REFUSED = [
     ("not XML", "<schema", "error: "),
 ]
 
+ANSWER = '<answer name="a">what it does</answer>'
+STAGE = f'<stage name="s" question="which?" default="a">{ANSWER}</stage>'
+PRESET = '<preset name="p">the first</preset>'
+SETTING = 'name="x" type="f32" default="1" least="0" most="2"'
+
+# The same of recipes.
+REFUSED += [
+    ("stage without question", page(f'<stage name="s" default="a">{ANSWER}</stage>{PRESET}'), "s: has no question"),
+    ("default that is no answer", page(f'<stage name="s" question="q" default="b">{ANSWER}</stage>{PRESET}'),
+     "s: the default is none of its answers (b)"),
+    ("answer twice", page(f'<stage name="s" question="q" default="a">{ANSWER}{ANSWER}</stage>{PRESET}'),
+     "s: two answers have one name"),
+    ("answer without text", page('<stage name="s" question="q" default="a"><answer name="a"/></stage>'),
+     "s.a: has no text that explains it"),
+    ("answer that C++ keeps", page('<stage name="s" question="q" default="a"><answer name="inline">x</answer></stage>'),
+     "s.inline: the name is a reserved word (inline)"),
+    ("stages without preset", page(STAGE), "presets: there is none"),
+    ("preset of no stage", page(f'{STAGE}<preset name="p" t="a">x</preset>'), "p: there is no such stage (t)"),
+    ("preset of no answer", page(f'{STAGE}<preset name="p" s="b">x</preset>'), "p: s has no such answer (b)"),
+    ("stage twice", page(STAGE + STAGE + PRESET), "members of a recipe: two have one name (s)"),
+    ("setting of no type", page('<setting name="x" type="f64" default="1"/>'), "x: a setting is one of f32, u32, u64"),
+    ("default out of limits", page(f'<setting {SETTING.replace("1", "3")}/>'), "x: the default is not within its limits (3)"),
+    ("one limit", page(f'<setting {SETTING.replace("most", "min")}/>'), "x: unknown attribute (min)"),
+    ("no limits", page('<setting name="x" type="f32" default="1"/>'), "x: needs limits"),
+    ("no default", page('<setting name="x" type="u32"/>'), "x: either it is optional or it has a default (None)"),
+]
+
 
 class PackGenerator(unittest.TestCase):
     def setUp(self):
@@ -82,6 +109,18 @@ class PackGenerator(unittest.TestCase):
             self.assertIn(old, text)
             self.assertNotEqual(self.schema_of(text.replace(old, new)).hash, before, old)
 
+    def test_a_recipes_table_becomes_enums_defaults_and_glsl(self):
+        self.path.write_text(page(f"""
+            <stage name="two-words" question="which?" default="b-c">{ANSWER}<answer name="b-c">more</answer></stage>
+            <setting {SETTING} option="x" unit="m">length</setting>{PRESET}<preset name="q" two-words="a">other</preset>"""))
+        out = Path(self.folder.name) / "out"
+        subprocess.run([sys.executable, SCHEMAS / "generate.py", "--schema", self.path, "--out", out], check=True)
+        header, shader = (out / "recipe_schema.h").read_text(), (out / "pack_schema.glsl").read_text()
+        for text in ("enum class TwoWords", "b_c = 1,", "TwoWords two_words = TwoWords::b_c;", "float x = 1.0f;",
+                     '"from 0 to 2 m"', '{"q", "other", Recipe{.two_words = TwoWords::a}}'):
+            self.assertIn(text, header)
+        self.assertIn("const uint TWO_WORDS_B_C = 1u;", shader)
+
     def test_echo_shaders_compile(self):
         generated = Path(pack_schema.__file__).parent
         shaders = sorted((generated / "echo").glob("*.comp"))
@@ -94,7 +133,7 @@ class PackGenerator(unittest.TestCase):
     def test_a_stale_format_page_is_refused(self):
         stale = Path(self.folder.name) / "FORMAT.md"
         stale.write_text((SCHEMAS / "FORMAT.md").read_text(encoding="utf-8") + "x", encoding="utf-8")
-        run = subprocess.run([sys.executable, SCHEMAS / "generate.py", "--schema", SCHEMAS / "pack.xml", "--check-format",
+        run = subprocess.run([sys.executable, SCHEMAS / "generate.py", "--schema", SCHEMAS / "pack.xml", "--check-page",
                               stale], capture_output=True, text=True)
         self.assertEqual(run.returncode, 1)
         self.assertIn("run generate.py", run.stderr)

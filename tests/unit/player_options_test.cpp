@@ -66,7 +66,7 @@ TEST(PlayerOptions, TheHeadlightIsLeftToThePackUnlessAsked) {
 
 TEST(PlayerOptions, EveryAnswerOfEveryStageIsAnOption) {
   for (const StageChoices& choices : stage_choices())
-    for (const std::string_view chosen : choices.answers) {
+    for (const auto& [chosen, meaning] : choices.answers) {
       const std::string option = "--" + std::string(choices.stage) + " " + std::string(chosen);
       const Parsed parsed = parse("scene.chandelier --output a.png " + option);
       if (!parsed.options) {  // only refusal() may object
@@ -140,7 +140,10 @@ TEST(PlayerOptions, HelpNamesStagesAnswersAndPresets) {
   EXPECT_EQ(help.exit_code, 0);
   for (const StageChoices& choices : stage_choices()) {
     EXPECT_NE(help.text.find("--" + std::string(choices.stage)), std::string::npos) << choices.stage;
-    for (const auto chosen : choices.answers) EXPECT_NE(help.text.find(chosen), std::string::npos) << chosen;
+    for (const auto& [chosen, meaning] : choices.answers) {
+      EXPECT_NE(help.text.find(chosen), std::string::npos) << chosen;
+      EXPECT_NE(help.text.find(meaning), std::string::npos) << meaning;
+    }
   }
   for (const Preset& preset : presets()) EXPECT_NE(help.text.find(preset.description), std::string::npos);
   EXPECT_EQ(parse("--version").exit_code, 0);
@@ -205,8 +208,10 @@ TEST(PlayerOptions, RefusesRecipesThatCannotBeRendered) {
   accepted("s --compare reference,lightcluster --report r --filter hard --d-init 0");
   recipe = presets().front().recipe;
   recipe.face_size_px = 8;
-  ASSERT_TRUE(refusal(recipe));
-  expect_refused("s --output a.png --face-size 8", *refusal(recipe));
+  EXPECT_EQ(refusal(recipe), "face-size must be from 16 to 16384 texels (8)");
+  expect_refused("s --output a.png --face-size 8", "--face-size: must be from 16 to 16384 texels (8)");
+  expect_refused("s --output a.png --face-size 64.5",
+                 "--face-size: must be a whole number from 16 to 16384 texels (64.5)");
 }
 
 TEST(PlayerOptions, PredictDrawsNothing) {

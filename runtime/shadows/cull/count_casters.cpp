@@ -3,6 +3,7 @@
 #include "shadows/cull/count_casters.h"
 
 #include <array>
+#include <glm/glm.hpp>
 
 #include "throws_shadow.h"
 

@@ -4,8 +4,6 @@
 #include "shadows/filter/hard.glsl"
 #include "shadows/filter/pcss.glsl"
 
-const uint FILTER_HARD = 0u, FILTER_PCF = 1u, FILTER_PCSS = 2u;  // frame/recipe.h
-
 // For all threads of a subgroup that have something to shade, at once.
 float visibility(ShadowMap map, Receiver r) {
   if (filter_answer == FILTER_PCF) return pcf_visibility(map, r);
