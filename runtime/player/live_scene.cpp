@@ -43,7 +43,7 @@ RenderSettings LiveScene::put_on_device(const Scene& scene) {
   device_->vkDeviceWaitIdle(device_.handle);
   on_device_.reset();
   OnDevice made{.visibility = visibility_for(scene.options.recipes, scene.pack),
-                .renderer = Renderer(device_, scene.pack)};
+                .renderer = Renderer(device_, scene.pack, renderer_options(scene.options))};
   const RenderSettings wanted =
       render_settings(scene.options, scene.options.recipes.front().recipe, scene.camera.camera, made.visibility);
   made.renderer.warm_up(wanted);

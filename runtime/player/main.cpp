@@ -60,7 +60,7 @@ ValidationLog draw(const Options& asked, std::unique_ptr<const Scene> scene) {
 #endif
   const auto& [stamp, pack, options, camera] = *scene;
   gpu::Device device(device_options);
-  Renderer renderer(device, pack);
+  Renderer renderer(device, pack, renderer_options(options));
   const VisibilitySource visibility = visibility_for(options.recipes, pack);
   if (options.mode == Mode::headless) run_headless(options, camera, pack, device, renderer, visibility);
   if (options.mode == Mode::compare) run_comparison(options, camera, pack, device, renderer, visibility);

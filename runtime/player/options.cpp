@@ -45,6 +45,14 @@ void read_exposure(const std::string& text, Options& options) {
   options.exposure_ev = ev;
 }
 
+void read_anisotropy(const std::string& text, Options& options) {
+  if (text == "auto") return;
+  float samples = 0.0f;
+  if (!CLI::detail::lexical_cast(text, samples) || !(samples >= 1.0f && samples <= 16.0f))
+    throw UsageError(fmt::format("--anisotropy: must be auto or a number from 1 to 16 ({})", text));
+  options.anisotropy = samples;
+}
+
 void read_headlight(const std::string& text, Options& options) {
   if (text == "auto") return;
   float strength = text == "on" ? kHeadlightOn : 0.0f;
@@ -214,6 +222,7 @@ Options checked(const Typed& typed) {
   read_size(typed.size, options);
   read_exposure(typed.exposure, options);
   read_headlight(typed.headlight, options);
+  read_anisotropy(typed.anisotropy, options);
   read_camera(typed.camera, options);
   if (!typed.path.empty())
     read_path_mode(typed, options);

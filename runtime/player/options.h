@@ -45,6 +45,7 @@ struct Options {
   float ambient = 0.0f;
   std::optional<float> headlight;  // absent: as automatic_headlight() finds it for the pack
   std::optional<float> exposure_ev;
+  std::optional<float> anisotropy;  // absent: as RendererOptions has it
 };
 
 /// Truth: its visibility is asked of rays on the CPU.
@@ -65,5 +66,8 @@ Parsed parse_options(const std::vector<std::string>& arguments);
 /// The settings of a frame of `recipe` as these options want it; `visibility` as visibility_for() has it.
 RenderSettings render_settings(const Options& options, const Recipe& recipe, const Camera& camera,
                                const VisibilitySource& visibility);
+
+/// What the renderer of a pack is made with. A long upload shows its progress on a terminal.
+RendererOptions renderer_options(const Options& options);
 
 }  // namespace chandelier::player

@@ -131,6 +131,13 @@ void declare_view(CLI::App& app, Typed& typed) {
       ->type_name("auto|on|off|R")
       ->capture_default_str()
       ->group("View");
+  app.add_option(
+         "--anisotropy", typed.anisotropy,
+         "Sharpness of textures on slanted surfaces: 1 to 16 samples along the slant. auto: 8 on a GPU, 1 where "
+         "the CPU draws")
+      ->type_name("N|auto")
+      ->capture_default_str()
+      ->group("View");
   app.add_option("--exposure", typed.exposure, "Stops, or auto: from the picture's own brightness")
       ->type_name("EV|auto")
       ->capture_default_str()

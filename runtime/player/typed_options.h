@@ -17,7 +17,7 @@ constexpr uint32_t kLargestPicture = 16384;  // texels a side; no Vulkan device 
 
 struct Typed {
   std::string pack, output, size = "1280x720", camera, stats, device, preset, exposure = "auto", headlight = "auto",
-                            compare, report, path;
+                            anisotropy = "auto", compare, report, path;
   std::optional<uint32_t> frames;
   bool list_devices = false;
   bool predict = false;

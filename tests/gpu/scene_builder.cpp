@@ -178,6 +178,10 @@ void Scene::add_batch(const Mesh& mesh, size_t first, size_t end, uint32_t mater
       {world.min, static_cast<uint32_t>(contents_.batches.size() - 1), world.max, instance});
 }
 
+void Scene::filter_textures() {
+  for (pack::Texture& texture : contents_.textures) texture.mag_filter = texture.min_filter = pack::Filter::linear;
+}
+
 void Scene::add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from_local) {
   for (const Vertex& vertex : mesh.vertices) {
     const glm::vec3 axis = std::abs(vertex.normal.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);

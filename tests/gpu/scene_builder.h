@@ -49,6 +49,8 @@ class Scene {
   /// Size, levels and format as `image` says; sampled at the nearest texel.
   uint32_t add_texture(pack::Image image, std::span<const std::byte> bytes,
                        const UvTransform& uv_transform = uv_identity);
+  /// All textures are filtered linearly, between levels too.
+  void filter_textures();
   /// Adds a mesh, in batches of up to 128 triangles, placed by a matrix that may mirror.
   void add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from_local = glm::mat4(1.0f));
   /// What was added last throws no shadow.
