@@ -131,6 +131,16 @@ std::string order_fault(const View& view) {
 
 }  // namespace
 
+std::string light_fault(const Light& light) {
+  Light alone = light;
+  alone.voxel = alone.node = none;
+  alone.name = {};
+  View view;
+  view.lights = {&alone, 1};
+  const std::string line = validate(view, 1);
+  return line.empty() ? fault(alone) : line.substr(at("lights", 0).size());
+}
+
 std::string check(const View& view, std::size_t most_threads) {
   if (std::string line = validate(view, most_threads); !line.empty()) return line;
   if (std::string line = bounds_fault("bounds_min_ws", view.bake_info->bounds_min_ws, view.bake_info->bounds_max_ws);

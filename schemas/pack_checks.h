@@ -13,6 +13,10 @@ namespace chandelier::pack {
 /// Big packs are checked in at most `most_threads` threads; 0: as many as there are cores.
 [[nodiscard]] std::string check(const View& view, std::size_t most_threads = 0);
 
+/// The first rule that a light by itself breaks, ".priority: 256 is above 255", or an empty string. Its voxel, node and
+/// name are not looked at.
+[[nodiscard]] std::string light_fault(const Light& light);
+
 /// Bytes of all levels of an image with valid fields: `image.size_bytes` must be this.
 std::uint64_t image_bytes(const Image& image);
 

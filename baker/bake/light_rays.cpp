@@ -8,6 +8,7 @@
 
 #include "is_static.h"
 #include "throws_shadow.h"
+#include "triangle_distance.h"
 
 namespace chandelier::baker {
 namespace {
@@ -38,7 +39,8 @@ bool visit_batches(const pack::Contents& pack, Meets meets, Visit visit) {
   return false;
 }
 
-using Triangle = std::array<glm::dvec3, 3>;
+using pack::distance_to_triangle;
+using pack::Triangle;
 
 Triangle triangle_ls(const pack::Contents& pack, std::uint32_t first_index) {
   Triangle out;
@@ -89,26 +91,6 @@ double meet_triangle(const Ray& ray, const Triangle& triangle, bool& leaves) {
 bool is_near_box(const glm::dvec3& point, double radius, const glm::vec3& low, const glm::vec3& high) {
   const glm::dvec3 apart = point - glm::clamp(point, glm::dvec3(low), glm::dvec3(high));
   return glm::dot(apart, apart) <= radius * radius;
-}
-
-double distance_to_segment(const glm::dvec3& a, const glm::dvec3& b) {  // from the origin
-  const glm::dvec3 along = b - a;
-  const double length2 = glm::dot(along, along);
-  const double t = length2 > 0 ? std::clamp(-glm::dot(a, along) / length2, 0.0, 1.0) : 0;
-  return glm::length(a + along * t);
-}
-
-double distance_to_triangle(const Triangle& t) {  // from the origin
-  double least = INFINITY;
-  bool inside = true;
-  const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 &a = t[i], &b = t[(i + 1) % 3];
-    least = std::min(least, distance_to_segment(a, b));
-    inside = inside && glm::dot(glm::cross(b - a, -a), normal) >= 0;
-  }
-  const double length = glm::length(normal);
-  return inside && length > 0 ? std::abs(glm::dot(t[0], normal)) / length : least;
 }
 
 /// The largest cosine between `axis` and a point of the segment a, b, both seen from the origin. Along the segment it

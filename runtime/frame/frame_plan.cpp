@@ -35,13 +35,20 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
 }
 
 // LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved. But the
-// reference knows no groups, which are what their lights' author asked for.
-bool reference_is_cheaper(const Recipe& recipe, size_t lights, size_t maps, bool a_group_shares) {
-  return recipe.select == Select::light_clusters && maps > 0 && !a_group_shares &&
+// reference knows no shared maps: not those of groups, which are what their lights' author asked for, and not those of
+// lights whose centres are held.
+bool reference_is_cheaper(const Recipe& recipe, size_t lights, size_t maps, bool must_share) {
+  return recipe.select == Select::light_clusters && maps > 0 && !must_share &&
          static_cast<float>(maps) >= recipe.reference_share * static_cast<float>(lights);
 }
 
-// The reference's answers; everything else as asked. Lights that somewhere in the pack have a radius stay soft.
+bool held_centers_share(const LightList& list, std::span<const LightId> held) {
+  for (size_t i = 0; i < list.lights.size() && !held.empty(); ++i)
+    if (list.center[i] != list.light_id[i] && held[list.light_id[i]] == list.center[i]) return true;
+  return false;
+}
+
+// The reference's answers; everything else as asked. All stay soft where a light of the world has a radius.
 Recipe reference_of(Recipe recipe, bool has_area_lights) {
   recipe.select = Select::per_light;
   if (!has_area_lights) recipe.filter = Filter::hard;
@@ -51,29 +58,30 @@ Recipe reference_of(Recipe recipe, bool has_area_lights) {
 
 }  // namespace
 
-FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
-                     const RoundLimits& limits, Surroundings* surroundings) {
+FramePlan plan_frame(const World& world, const RenderSettings& settings, const RoundLimits& limits,
+                     Surroundings* surroundings) {
   const float aspect = aspect_of(settings);
-  const SelectAids aids{.surroundings = surroundings,
-                        .ambient = settings.ambient,
-                        .headlight = settings.headlight,
-                        .exposure_ev = settings.exposure_ev,
-                        .previous_centers = settings.previous_centers,
-                        .centers = settings.centers,
-                        .out_of_view = settings.lights_out_of_view};
+  const SelectionInputs inputs{.surroundings = surroundings,
+                               .ambient = settings.ambient,
+                               .headlight = settings.headlight,
+                               .exposure_ev = settings.exposure_ev,
+                               .previous_centers = settings.previous_centers,
+                               .centers = settings.centers,
+                               .out_of_view = settings.lights_out_of_view,
+                               .search_beside_frames = settings.search_beside_frames};
   FramePlan plan{.recipe = settings.recipe};
   auto start = Clock::now();
-  plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, aids);
+  plan.list = select_lights(world, plan.recipe, settings.camera, aspect, inputs);
   if (reference_is_cheaper(plan.recipe, plan.list.shadowed_in_view(), plan.list.maps.size(),
-                           group_shares(lights, plan.list))) {
+                           group_shares(world, plan.list) || held_centers_share(plan.list, settings.centers))) {
     plan.recipe = reference_of(plan.recipe, plan.list.has_area_lights);
-    plan.list = select_lights(lights, plan.recipe, settings.camera, aspect, {.out_of_view = aids.out_of_view});
+    plan.list = select_lights(world, plan.recipe, settings.camera, aspect, inputs);
   }
   plan.select_ms = ms_since(start);
 
   start = Clock::now();
   if (plan.recipe.filter != Filter::rays)
-    plan.views = project_lights(plan.list, settings.camera, aspect, bounds, plan.recipe.face_size_px);
+    plan.views = project_lights(plan.list, settings.camera, aspect, world.bounds(), plan.recipe.face_size_px);
   if (plan.recipe.deliver == Deliver::textures)
     place_visibility_rects(plan.list, settings.camera, settings.width, settings.height);
   plan.rounds = plan_rounds(plan.list, plan.views, limits);
@@ -83,23 +91,24 @@ FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, 
   return plan;
 }
 
-ShadowMapCounter::ShadowMapCounter(std::span<const pack::Light> lights, const RenderSettings& settings)
+ShadowMapCounter::ShadowMapCounter(const World& world, const RenderSettings& settings)
     : recipe_(settings.recipe),
-      maps_(lights, settings.recipe, settings.camera, aspect_of(settings), settings.lights_out_of_view) {}
+      maps_(world, settings.recipe, settings.camera, aspect_of(settings), settings.lights_out_of_view) {}
 
 uint64_t ShadowMapCounter::count(float d_init_m, uint64_t most) {
   const size_t maps = maps_.count(d_init_m, most);
   return reference_is_cheaper(recipe_, maps_.in_view(), maps, maps_.group_shares()) ? maps_.in_view() : maps;
 }
 
-FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights) {
+FrameStats planned_stats(const World& world, const FramePlan& plan, const RenderSettings& settings) {
   const uint64_t map_bytes = cube_bytes(settings.recipe.face_size_px);
   FrameStats stats;
-  stats.lights = lights;
+  stats.lights = world.light_count();
   stats.lights_in_view = plan.list.lights_in_view;
   stats.shadowless_in_view = plan.list.shadowless.size();
   stats.light_clusters = plan.list.maps.size();
-  stats.centers = centers_of_pack_lights(plan.list, lights);
+  stats.centers = centers_by_light(world, plan.list);
+  stats.selection_is_provisional = plan.list.is_provisional;
   stats.reference_path = plan.recipe.select != settings.recipe.select;
   stats.shadow_maps = plan.recipe.filter == Filter::rays ? 0 : plan.list.maps.size();
   stats.shadow_views = plan.views.size() - 1;

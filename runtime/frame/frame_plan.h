@@ -8,7 +8,7 @@
 #include "frame/rounds.h"
 #include "lights/light_list.h"
 #include "lights/map_counter.h"
-#include "scene/bounds.h"
+#include "world/world.h"
 
 namespace chandelier {
 
@@ -23,14 +23,14 @@ struct FramePlan {
 };
 
 /// `surroundings` are needed as select_lights() needs them.
-FramePlan plan_frame(std::span<const pack::Light> lights, const Bounds& bounds, const RenderSettings& settings,
-                     const RoundLimits& limits, Surroundings* surroundings);
+FramePlan plan_frame(const World& world, const RenderSettings& settings, const RoundLimits& limits,
+                     Surroundings* surroundings);
 
-/// Counts shadow_maps of planned_stats() for one d_init after another: in less time. For light clusters without walls,
+/// Counts shadow_maps of planned_stats() for one d_init after another, in less time. For light clusters without walls,
 /// stability or held centres, and a filter that reads maps.
 class ShadowMapCounter {
  public:
-  ShadowMapCounter(std::span<const pack::Light> lights, const RenderSettings& settings);
+  ShadowMapCounter(const World& world, const RenderSettings& settings);
   /// Any number above `most` where there are more.
   uint64_t count(float d_init_m, uint64_t most);
   /// No later d_init will be larger, which makes counting faster.
@@ -41,7 +41,7 @@ class ShadowMapCounter {
   MapCounter maps_;
 };
 
-/// What is known of a frame before it is drawn: all but times, exposure, draws and triangles. `lights`: in the pack.
-FrameStats planned_stats(const FramePlan& plan, const RenderSettings& settings, uint64_t lights);
+/// What is known of a frame before it is drawn: all but times, exposure, draws and triangles.
+FrameStats planned_stats(const World& world, const FramePlan& plan, const RenderSettings& settings);
 
 }  // namespace chandelier

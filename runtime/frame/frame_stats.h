@@ -28,12 +28,13 @@ struct FrameStats {
   uint64_t shadow_views = 0;
   uint64_t shadow_triangles = 0;
   uint64_t shadow_draws = 0;
-  uint64_t shadow_bytes = 0;           // depth that all shadow maps of the frame need together
-  uint64_t shadow_pool_bytes = 0;      // depth held at a time
-  uint64_t shadow_rounds = 0;          // how often the pool was filled
-  uint64_t visibility_bytes = 0;       // that all visibility textures of the frame need together
-  uint64_t visibility_pool_bytes = 0;  // of them, held at a time
-  std::vector<uint32_t> centers;       // for each light of the pack whose shadow map it took; pack::none: none
+  uint64_t shadow_bytes = 0;              // depth that all shadow maps of the frame need together
+  uint64_t shadow_pool_bytes = 0;         // depth held at a time
+  uint64_t shadow_rounds = 0;             // how often the pool was filled
+  uint64_t visibility_bytes = 0;          // that all visibility textures of the frame need together
+  uint64_t visibility_pool_bytes = 0;     // of them, held at a time
+  std::vector<uint32_t> centers;          // for each light of the world whose shadow map it took; pack::none: none
+  bool selection_is_provisional = false;  // RenderSettings::search_beside_frames: a search for this view still runs
 };
 
 }  // namespace chandelier

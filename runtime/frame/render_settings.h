@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "frame/camera.h"
+#include "view/camera.h"
 #include "frame/recipe.h"
 #include "frame/visibility_query.h"
 
@@ -22,9 +22,12 @@ struct RenderSettings {
   float headlight = 0.0f;                  // of a white surface that faces the camera, by a light in the camera
   std::optional<float> exposure_ev;        // stops; absent: from the picture's own brightness
   std::vector<uint32_t> previous_centers;  // FrameStats::centers of the frame before, where the recipe has stability
-  std::vector<uint32_t> centers;           // whose map each light of the pack takes; pack::none, or empty: as selected
+  std::vector<uint32_t> centers;           // whose map each light of the world takes; pack::none, or empty: as selected
   bool lights_out_of_view = false;         // are selected too, as for a camera that looks everywhere
-  VisibilitySource visibility;             // needed by filter rays, unused by others
+  /// Select error-driven: a new view's search runs in a thread, and frames go on with the last answer until it ends
+  /// (Renderer::has_new_selection()). Else draw() waits for it.
+  bool search_beside_frames = false;
+  VisibilitySource visibility;  // needed by filter rays, unused by others
 
   bool operator==(const RenderSettings&) const = default;
 };

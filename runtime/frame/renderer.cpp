@@ -10,6 +10,7 @@
 
 #include "frame/frame_resources.h"
 #include "frame/ray_visibility.h"
+#include "scene/world_changes.h"
 #include "shading/g_buffer.h"
 #include "shading/shade.h"
 #include "shading/tone_map.h"
@@ -33,6 +34,7 @@ float anisotropy_on(const gpu::Device& device, const RendererOptions& options) {
 // What was decided for the settings of a frame. Recorded frames that ask for the same take it again.
 struct Planned {
   RenderSettings settings;
+  Version world_version = 0;
   FramePlan plan;
   FrameStats stats;
   bool is_there = false;
@@ -77,6 +79,7 @@ void check_settings(const gpu::Device& device, const RenderSettings& settings) {
 
 struct Renderer::Impl {
   gpu::Device& device;
+  const World& world;
   Surroundings surroundings;
   GpuScene scene;
   CullPipelines cull;
@@ -89,10 +92,11 @@ struct Renderer::Impl {
   std::vector<FrameSlot> slots;
   Planned planned;
 
-  Impl(gpu::Device& on, const pack::File& file, const RendererOptions& options)
+  Impl(gpu::Device& on, const World& of, const RendererOptions& options)
       : device(on),
-        surroundings(file.view()),
-        scene(upload_scene(on, file, {anisotropy_on(on, options), options.upload_progress})),
+        world(of),
+        surroundings(of),
+        scene(upload_scene(on, of, {anisotropy_on(on, options), options.upload_progress})),
         cull(make_cull_pipelines(on)),
         casters(make_caster_pipelines(on, scene)),
         g_buffer(make_g_buffer_pipeline(on, scene)),
@@ -103,6 +107,7 @@ struct Renderer::Impl {
     for (uint32_t i = 0; i < std::max(1u, options.frames_in_flight); ++i) slots.emplace_back(on);
   }
 
+  bool has_planned(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
   Recording prepare(gpu::Commands cmd, FrameSlot& slot, const RenderSettings& settings);
   void record(const Recording& frame);
@@ -118,17 +123,23 @@ struct Renderer::Impl {
   void record_target(gpu::Commands cmd, const Target& target);
 };
 
+bool Renderer::Impl::has_planned(const RenderSettings& settings) const {
+  return planned.is_there && planned.world_version == world.version() && !surroundings.has_news() &&
+         planned.settings == settings;
+}
+
 void Renderer::Impl::plan(const RenderSettings& settings) {
   const uint64_t batch_instances = std::max(1u, scene.batch_instance_count);
   planned.is_there = false;
   planned.plan =
-      plan_frame(scene.lights, scene.bounds, settings,
+      plan_frame(world, settings,
                  {.maps = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes),
                   .views = most_draws_of_round / batch_instances,
                   .visibility_bytes = device.limits.maxStorageBufferRange},
                  &surroundings);
-  planned.stats = planned_stats(planned.plan, settings, scene.lights.size());
+  planned.stats = planned_stats(world, planned.plan, settings);
   planned.settings = settings;
+  planned.world_version = world.version();
   planned.is_there = true;
 }
 
@@ -144,6 +155,7 @@ Recording Renderer::Impl::prepare(gpu::Commands cmd, FrameSlot& slot, const Rend
 
 void Renderer::Impl::record_uploads(const Recording& frame) {
   const auto& [cmd, slot, settings, plan] = frame;
+  record_world_changes(cmd, world, scene);
   const auto write = [&, &slot = slot]<typename T>(gpu::Streamed& to, std::initializer_list<std::span<const T>> parts) {
     to.write(device, frame.cmd, slot.uploads, slot.retired, parts);
   };
@@ -324,8 +336,8 @@ const FrameStats& Renderer::Impl::read_stats(FrameSlot& slot) {
   return stats;
 }
 
-Renderer::Renderer(gpu::Device& device, const pack::File& pack, const RendererOptions& options)
-    : impl_(std::make_unique<Impl>(device, pack, options)) {}
+Renderer::Renderer(gpu::Device& device, const World& world, const RendererOptions& options)
+    : impl_(std::make_unique<Impl>(device, world, options)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
@@ -337,7 +349,7 @@ const FrameStats& Renderer::record(VkCommandBuffer cmd, uint32_t slot, const Ren
   if (settings.recipe.filter == Filter::rays)
     throw std::invalid_argument("filter rays: cannot be recorded, for the CPU casts them; use Renderer::draw()");
   FrameSlot& frame_slot = impl_->slots.at(slot);
-  if (impl_->planned.is_there && impl_->planned.settings == settings)
+  if (impl_->has_planned(settings))
     impl_->planned.plan.select_ms = impl_->planned.plan.project_ms = 0.0;
   else
     impl_->plan(settings);
@@ -373,6 +385,10 @@ void Renderer::warm_up(const RenderSettings& settings) {
   FrameSlot& slot = impl_->slots.front();
   make_room(impl_->device, impl_->scene, settings, impl_->planned.plan, slot, impl_->resources);
   slot.reset();
+}
+
+bool Renderer::has_new_selection() const {
+  return impl_->surroundings.has_news();
 }
 
 Picture Renderer::read_back() {

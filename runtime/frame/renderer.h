@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws pictures of a pack with a recipe. This is what an embedding program includes.
+// Draws pictures of a world with a recipe. This is what an embedding program includes.
 #pragma once
 
 #include <functional>
@@ -10,7 +10,7 @@
 #include "frame/picture.h"
 #include "frame/render_settings.h"
 #include "gpu/device.h"
-#include "pack_file.h"
+#include "world/world.h"
 
 namespace chandelier {
 
@@ -29,9 +29,10 @@ struct Target {
 
 class Renderer {
  public:
-  /// Uploads the pack, which must outlive it: lights are selected by looking into it. Throws gpu::Error.
-  Renderer(gpu::Device& device, const pack::File& pack, const RendererOptions& options = {});
-  Renderer(gpu::Device& device, pack::File&& pack, const RendererOptions& options = {}) = delete;
+  /// Uploads the world as it is. It must outlive this; what changes in it between frames is in the next one that is
+  /// recorded. Throws gpu::Error.
+  Renderer(gpu::Device& device, const World& world, const RendererOptions& options = {});
+  Renderer(gpu::Device& device, World&& world, const RendererOptions& options = {}) = delete;
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
@@ -54,6 +55,8 @@ class Renderer {
   /// Draws one frame with slot 0 and waits for it. No recorded frame may be on its way. Throws as record() does, and
   /// std::invalid_argument where what the recipe needs is missing in the settings.
   FrameStats draw(const RenderSettings& settings);
+  /// With RenderSettings::search_beside_frames: a search has ended since the last frame; the next one may look different.
+  bool has_new_selection() const;
   /// The last frame drawn.
   Picture read_back();
   /// The last frame as shown: VK_FORMAT_R8G8B8A8_UNORM holding sRGB values, in TRANSFER_SRC_OPTIMAL.

@@ -2,86 +2,131 @@
 #include "lights/error_driven.h"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
+#include <tuple>
+#include <utility>
+
+#include "lights/pack_lights.h"
+#include "lights/search_stopped.h"
 
 namespace chandelier {
 namespace {
 
-constexpr float lights_times_points = 3e5f;
-constexpr float fewest_rows = 36.0f, most_rows = 108.0f;
-constexpr uint32_t scatter_of_search = 1;
-// Of the error that clusters are expected to make. What is expected of a selection may be too low by a third; what more
-// maps would take away of that is worth a few, but not as many as clusters have (ERROR_SELECTION.md).
-constexpr double in_hand = 0.85;
-constexpr double amply_in_hand = 0.65;
-
-constexpr double invisible_rmse = 5e-4;  // an eighth of what a byte of a channel holds
-
-uint32_t map_count(std::span<const MapMember> members) {
-  uint32_t maps = 0;
-  for (const MapMember& member : members) maps += member.light == member.center;
-  return maps;
+// Of two recipes that select by error. Light clusters and groups follow from recipe, view and world.
+bool ask_the_same(const ErrorTask& a, const ErrorTask& b) {
+  const auto asked = [](const Recipe& r) {
+    return std::tie(r.max_maps, r.max_rmse, r.filter, r.face_size_px, r.d_init_m, r.z_far_m, r.distance_scaling,
+                    r.dynamic_lights, r.area_radius, r.walls);
+  };
+  return asked(a.recipe) == asked(b.recipe) && a.view == b.view && a.key == b.key;
 }
+
+// Index of an id among ascending ones, or their number.
+uint32_t index_of(std::span<const LightId> ids, LightId id) {
+  const auto found = std::lower_bound(ids.begin(), ids.end(), id);
+  return static_cast<uint32_t>((found != ids.end() && *found == id ? found : ids.end()) - ids.begin());
+}
+
+// What another task's members say of the lights of this one.
+class Adapted {
+ public:
+  Adapted(const World& world, const ErrorTask& task) : world_(world), task_(task), members_(task.key.in_view.size()) {}
+
+  void add(const ErrorTask& of, const MapMember& member) {
+    const uint32_t light = index_of(task_.key.in_view, of.key.in_view[member.light]);
+    const uint32_t center = index_of(task_.key.in_view, of.key.in_view[member.center]);
+    if (light == members_.size() || center == members_.size() || !may_share(light, center)) return;
+    members_[light].push_back({light, center, member.filter_radius_m, member.share});
+  }
+
+  // Each light's shares add up to 1.
+  std::vector<MapMember> take() {
+    std::vector<MapMember> all;
+    for (uint32_t light = 0; light < members_.size(); ++light) {
+      auto& of_light = members_[light];
+      const bool is_grouped = lamp(light).group != 0;
+      if (is_grouped) of_light = {{light, task_.group_centers[light], 0.0f}};
+      if (of_light.empty()) of_light = {{light, light, 0.0f}};
+      float sum = 0.0f;
+      for (const MapMember& member : of_light) sum += member.share;
+      for (MapMember& member : of_light) {
+        member.share = of_light.size() == 1 ? 1.0f : member.share / sum;
+        all.push_back(member);
+      }
+    }
+    return all;
+  }
+
+ private:
+  const pack::Light& lamp(uint32_t light) const { return world_.lights()[task_.key.in_view[light]]; }
+  bool keeps_own(uint32_t light) const {
+    return lamp(light).group != 0 || lamp(light).unclustered != 0 ||
+           (lamp(light).dynamic != 0 && task_.recipe.dynamic_lights == DynamicLights::own);
+  }
+  bool may_share(uint32_t light, uint32_t center) const {
+    return light == center ||
+           (is_directional(lamp(light)) == is_directional(lamp(center)) && !keeps_own(light) && !keeps_own(center));
+  }
+
+  const World& world_;
+  const ErrorTask& task_;
+  std::vector<std::vector<MapMember>> members_;  // of each light in view
+};
 
 }  // namespace
 
-SampleSettings sample_grid(size_t lights, const SampledView& view) {
-  const float points = lights_times_points / static_cast<float>(std::max<size_t>(1, lights));
-  const float rows = std::clamp(std::sqrt(points * 9.0f / 16.0f), fewest_rows, most_rows);
-  return {.columns = static_cast<uint32_t>(rows * 16.0f / 9.0f),
-          .rows = static_cast<uint32_t>(rows),
-          .ambient = view.ambient,
-          .headlight = view.headlight,
-          .exposure_ev = view.exposure_ev};
+ErrorDriven::ErrorDriven(const World& world, const rays::PackRays& rays)
+    : world_(world), scene_(world.pack(), rays), search_(scene_) {}
+
+std::vector<MapMember> ErrorDriven::select(const ErrorTask& task) {
+  stop();
+  return search_.select(task, sampled_lights(world_, task.key.in_view), {});
 }
 
-void ErrorDriven::look(std::span<const uint32_t> in_view, const SampledView& view) {
-  if (judge_ && view == view_ && std::equal(in_view.begin(), in_view.end(), in_view_.begin(), in_view_.end())) return;
-  ladder_.reset();
-  view_ = view;
-  in_view_.assign(in_view.begin(), in_view.end());
-  judge_.emplace(scene_, in_view_, view.camera, view.aspect, sample_grid(in_view.size(), view));
+bool ErrorDriven::has_news() const {
+  return running_.valid() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-void ErrorDriven::climb(const SampledView& view, DynamicLights dynamic_lights,
-                        std::span<const uint32_t> group_centers) {
-  if (ladder_ && dynamic_lights_ == dynamic_lights) return;
-  ladder_.reset();
-  dynamic_lights_ = dynamic_lights;
-  SampleSettings settings = sample_grid(in_view_.size(), view);
-  settings.scatter = scatter_of_search;
-  samples_.emplace(scene_, in_view_, view.camera, view.aspect, settings);
-  ladder_.emplace(*samples_, dynamic_lights, group_centers);
+// Throws what the search threw.
+void ErrorDriven::take_news() {
+  if (!has_news()) return;
+  if (auto found = running_.get()) last_ = std::move(found);
 }
 
-// Estimates of soft filters have an error that more maps do not lower: the number of maps limits it.
-std::vector<MapMember> ErrorDriven::within(double most_rmse, uint32_t most_maps, const Recipe& recipe) const {
-  auto chosen = ladder_->within(most_rmse, *judge_, {recipe.filter, recipe.face_size_px});
-  return map_count(chosen) <= most_maps ? chosen : ladder_->with_at_most(most_maps);
+std::optional<ErrorAnswer> ErrorDriven::select_beside(const ErrorTask& task) {
+  take_news();
+  if (last_ && ask_the_same(task, *last_->task)) return ErrorAnswer{last_->members, true};
+  if (!running_.valid()) {
+    stop_ = std::stop_source();
+    // Copies: the world may change while the search goes on.
+    running_ = std::async(
+        std::launch::async,
+        [this, asked = std::make_shared<const ErrorTask>(task), lights = sampled_lights(world_, task.key.in_view),
+         stop = stop_.get_token()]() -> std::optional<Found> {
+          try {
+            return Found{asked, search_.select(*asked, lights, stop)};
+          } catch (const SearchStopped&) {
+            return std::nullopt;
+          }
+        });
+  }
+  if (!last_) return std::nullopt;
+  Adapted adapted(world_, task);
+  for (const MapMember& member : last_->members) adapted.add(*last_->task, member);
+  return ErrorAnswer{adapted.take(), false};
 }
 
-std::vector<MapMember> ErrorDriven::select(std::span<const uint32_t> in_view, std::span<const MapMember> clusters,
-                                           std::span<const uint32_t> group_centers, const SampledView& view,
-                                           const Recipe& recipe) {
-  look(in_view, view);
-  climb(view, recipe.dynamic_lights, group_centers);
-  const uint32_t most_maps = recipe.max_maps.value_or(UINT32_MAX);
-  if (recipe.max_rmse) return within(*recipe.max_rmse, most_maps, recipe);
-  if (recipe.max_maps) return ladder_->with_at_most(most_maps);
-  const Filter soft = recipe.filter == Filter::hard ? Filter::pcss : recipe.filter;
-  const double target = estimated_rmse(*judge_, clusters, {soft, recipe.face_size_px});
-  const uint32_t most = map_count(clusters);
-  const auto maps_within = [&](double share) {
-    return map_count(within(std::max(share * target, invisible_rmse), most, recipe));
-  };
-  const uint32_t ample = std::min(maps_within(amply_in_hand), most * 3 / 5);
-  return ladder_->with_at_most(std::max(maps_within(in_hand), ample));
+void ErrorDriven::stop() {
+  if (!running_.valid()) return;
+  stop_.request_stop();
+  running_.wait();
+  if (auto found = std::exchange(running_, {}).get()) last_ = std::move(found);
 }
 
-double ErrorDriven::expected_rmse(std::span<const uint32_t> in_view, std::span<const MapMember> members,
+double ErrorDriven::expected_rmse(std::span<const LightId> in_view, std::span<const MapMember> members,
                                   const SampledView& view, const Recipe& recipe) {
-  look(in_view, view);
-  return estimated_rmse(*judge_, members, {recipe.filter, recipe.face_size_px});
+  stop();
+  return search_.expected_rmse(world_key(world_, in_view), sampled_lights(world_, in_view), view, members, recipe);
 }
 
 }  // namespace chandelier

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "frame/recipe.h"
+#include "recipe_schema.h"
 #include "lights/light_samples.h"
 
 namespace chandelier {

@@ -33,7 +33,7 @@ bool by_center(const Member& a, const Member& b) {
   return a.center != b.center ? a.center < b.center : a.light < b.light;
 }
 
-// Numbers of the pack as places among `numbers`; a centre that is not among them is none.
+// Ids as places among `numbers`; a centre that is not among them is none.
 std::vector<uint32_t> as_places(std::span<const uint32_t> previous_centers, std::span<const uint32_t> numbers) {
   std::vector<uint32_t> place(previous_centers.size(), lights::no_center);
   for (uint32_t i = 0; i < numbers.size() && !place.empty(); ++i) place[numbers[i]] = i;
@@ -55,17 +55,18 @@ float area_radius_m(const Recipe& recipe, const lights::LightCluster& cluster) {
                                                   : disc_per_d_min * cluster.d_min_m;
 }
 
-// `numbers` are those of the clustered lights in the pack.
+// `numbers` are the ids of the clustered lights.
 std::vector<Member> members_of_light_clusters(std::span<const pack::Light> lights, std::span<const uint32_t> numbers,
-                                              const Recipe& recipe, const Camera& camera, const SelectAids& aids) {
+                                              const Recipe& recipe, const Camera& camera,
+                                              const SelectionInputs& inputs) {
   std::vector<lights::ClusterLight> spheres;
   for (const uint32_t i : numbers) spheres.push_back(cluster_light(lights[i]));
   lights::Blocked blocked;
   if (recipe.walls != WallTest::none)
-    blocked = [&, &walls = aids.surroundings->walls()](uint32_t a, uint32_t b) {
+    blocked = [&, &walls = inputs.surroundings->walls()](uint32_t a, uint32_t b) {
       return walls.between(recipe.walls, numbers[a], numbers[b]);
     };
-  const std::vector<uint32_t> previous = as_places(aids.previous_centers, numbers);
+  const std::vector<uint32_t> previous = as_places(inputs.previous_centers, numbers);
   lights::ClusterSettings settings = cluster_settings(recipe, camera);
   settings.previous_centers = previous;
   const auto result = lights::select_light_clusters(spheres, settings, blocked);
@@ -100,10 +101,10 @@ std::vector<Member> members_of_directional_clusters(std::span<const pack::Light>
 }
 
 std::vector<Member> clustered(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
-                              const Recipe& recipe, const Camera& camera, const SelectAids& aids) {
+                              const Recipe& recipe, const Camera& camera, const SelectionInputs& inputs) {
   std::vector<uint32_t> directional, others;
   for (const uint32_t i : in_view) (is_directional(lights[i]) ? directional : others).push_back(i);
-  auto members = members_of_light_clusters(lights, others, recipe, camera, aids);
+  auto members = members_of_light_clusters(lights, others, recipe, camera, inputs);
   const auto far = members_of_directional_clusters(lights, directional, recipe, camera);
   members.insert(members.end(), far.begin(), far.end());
   return members;
@@ -121,18 +122,23 @@ std::vector<uint32_t> group_centers(std::span<const pack::Light> lights, std::sp
   return centers;
 }
 
-// What error-driven selection makes of the same lights in view.
-std::vector<Member> members_by_error(std::span<const pack::Light> lights, std::span<const uint32_t> in_view,
-                                     std::vector<Member> clusters, const Recipe& recipe, const SampledView& view,
-                                     ErrorDriven& by_error) {
+ErrorTask error_task(const World& world, std::span<const LightId> in_view, std::vector<Member> clusters,
+                     const Recipe& recipe, const Camera& camera, float aspect, const SelectionInputs& inputs) {
   std::sort(clusters.begin(), clusters.end(), by_center);
   std::vector<MapMember> of_clusters;
   for (const Member& m : clusters)
     of_clusters.push_back({index_in(in_view, m.light), index_in(in_view, m.center), m.filter_radius_m});
+  return {.key = world_key(world, in_view),
+          .view = {camera, aspect, inputs.ambient, inputs.headlight, inputs.exposure_ev},
+          .recipe = recipe,
+          .clusters = std::move(of_clusters),
+          .group_centers = group_centers(world.lights(), in_view, recipe, camera)};
+}
 
-  const std::vector<MapMember> chosen =
-      by_error.select(in_view, of_clusters, group_centers(lights, in_view, recipe, view.camera), view, recipe);
-  std::vector<float> range_m(in_view.size(), 0.0f);  // LightCluster §3.1.3: C_att
+// What an error search chose, with how far each map must reach (LightCluster §3.1.3: C_att).
+std::vector<Member> as_members(std::span<const pack::Light> lights, std::span<const LightId> in_view,
+                               std::span<const MapMember> chosen) {
+  std::vector<float> range_m(in_view.size(), 0.0f);
   for (const MapMember& m : chosen) {
     const pack::Light& light = lights[in_view[m.light]];
     const float apart = glm::distance(light.position_ws, lights[in_view[m.center]].position_ws);
@@ -142,6 +148,31 @@ std::vector<Member> members_by_error(std::span<const pack::Light> lights, std::s
   for (const MapMember& m : chosen)
     members.push_back({in_view[m.light], in_view[m.center], range_m[m.center], m.filter_radius_m, m.share});
   return members;
+}
+
+std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<const uint32_t> in_view) {
+  std::vector<Member> members;
+  for (uint32_t i : in_view) members.push_back({i, i, lights[i].range_m, 0.0f});
+  return members;
+}
+
+// Of all lights in view that throw a shadow. `is_provisional`: an error search for them still runs.
+std::vector<Member> select_members(const World& world, std::span<const LightId> in_view, const Recipe& recipe,
+                                   const Camera& camera, float aspect, const SelectionInputs& inputs,
+                                   bool& is_provisional) {
+  const auto lights = world.lights();
+  if (recipe.select == Select::per_light) return one_map_each(lights, in_view);
+  const bool by_error = recipe.select == Select::error_driven;
+  const bool has_limits = by_error && (recipe.max_maps || recipe.max_rmse);
+  std::vector<Member> clusters;
+  if (!has_limits || inputs.search_beside_frames) clusters = clustered(lights, in_view, recipe, camera, inputs);
+  if (!by_error) return clusters;
+  ErrorDriven& errors = inputs.surroundings->by_error();
+  const ErrorTask task = error_task(world, in_view, clusters, recipe, camera, aspect, inputs);
+  if (!inputs.search_beside_frames) return as_members(lights, in_view, errors.select(task));
+  const std::optional<ErrorAnswer> answer = errors.select_beside(task);
+  is_provisional = !answer || !answer->is_current;
+  return answer ? as_members(lights, in_view, answer->members) : clusters;
 }
 
 // A light that shall have another map than it has most of takes that alone.
@@ -189,12 +220,6 @@ void hold_centers(std::span<const pack::Light> lights, std::span<const uint32_t>
   }
 }
 
-std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<const uint32_t> in_view) {
-  std::vector<Member> members;
-  for (uint32_t i : in_view) members.push_back({i, i, lights[i].range_m, 0.0f});
-  return members;
-}
-
 LightList make_list(std::span<const pack::Light> lights, std::vector<Member> members, float z_far_m) {
   std::sort(members.begin(), members.end(), by_center);
   LightList list;
@@ -221,7 +246,7 @@ LightList make_list(std::span<const pack::Light> lights, std::vector<Member> mem
     list.lights.back().radiant *= member.share;
     list.lights.back().map = static_cast<uint32_t>(list.maps.size() - 1);
     ++map.light_count;
-    list.pack_light.push_back(member.light);
+    list.light_id.push_back(member.light);
     list.center.push_back(member.center);
     list.share.push_back(member.share);
   }
@@ -236,55 +261,53 @@ float added_radius_m(const LightList& list, uint32_t map) {
 
 }  // namespace
 
-LightList select_lights(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
-                        const SelectAids& aids) {
+LightList select_lights(const World& world, const Recipe& recipe, const Camera& camera, float aspect,
+                        const SelectionInputs& inputs) {
+  const auto lights = world.lights();
   const bool looks_around =
       recipe.select == Select::error_driven || (recipe.select != Select::per_light && recipe.walls != WallTest::none);
-  if (looks_around && !aids.surroundings)
+  if (looks_around && !inputs.surroundings)
     throw std::invalid_argument("select_lights: the recipe needs to know the lights' surroundings");
-  const auto one_each = [&](std::span<const uint32_t> centers, const char* what) {
+  const auto one_each = [&](std::span<const LightId> centers, const char* what) {
     if (!centers.empty() && centers.size() != lights.size())
-      throw std::invalid_argument(std::string(what) + ": must be one per light of the pack (" +
+      throw std::invalid_argument(std::string(what) + ": must be one per light of the world (" +
                                   std::to_string(centers.size()) + " for " + std::to_string(lights.size()) + ")");
   };
-  one_each(aids.previous_centers, "previous centres");
-  one_each(aids.centers, "centres");
-  auto in_view = lights_in_view(lights, camera, aspect, aids.out_of_view);
-  const auto shadowless = take_shadowless(lights, in_view);
-  const bool has_limits = recipe.select == Select::error_driven && (recipe.max_maps || recipe.max_rmse);
-  std::vector<Member> members = recipe.select == Select::per_light ? one_map_each(lights, in_view)
-                                : has_limits                       ? std::vector<Member>()
-                                                                   : clustered(lights, in_view, recipe, camera, aids);
-  if (recipe.select == Select::error_driven)
-    members = members_by_error(lights, in_view, std::move(members), recipe,
-                               {camera, aspect, aids.ambient, aids.headlight, aids.exposure_ev},
-                               aids.surroundings->by_error());
-  if (!aids.centers.empty()) hold_centers(lights, aids.centers, members);
+  one_each(inputs.previous_centers, "previous centres");
+  one_each(inputs.centers, "centres");
+  auto in_view = lights_in_view(world, camera, aspect, inputs.out_of_view);
+  const auto shadowless = take_shadowless(world, in_view);
+  bool is_provisional = false;
+  auto members = select_members(world, in_view, recipe, camera, aspect, inputs, is_provisional);
+  if (!inputs.centers.empty()) hold_centers(lights, inputs.centers, members);
   LightList list = make_list(lights, std::move(members), recipe.z_far_m);
-  for (const uint32_t i : shadowless) list.shadowless.push_back(frame_light(lights[i]));
+  for (const LightId id : shadowless) list.shadowless.push_back(frame_light(lights[id]));
   list.lights_in_view = static_cast<uint32_t>(in_view.size() + shadowless.size());
+  list.is_provisional = is_provisional;
   return list;
 }
 
-bool group_shares(std::span<const pack::Light> lights, const LightList& list) {
+bool group_shares(const World& world, const LightList& list) {
+  const auto lights = world.lights();
   for (size_t i = 0; i < list.lights.size(); ++i)
-    if (list.center[i] != list.pack_light[i] && lights[list.pack_light[i]].group != 0) return true;
+    if (list.center[i] != list.light_id[i] && lights[list.light_id[i]].group != 0) return true;
   return false;
 }
 
-std::vector<uint32_t> centers_of_pack_lights(const LightList& list, size_t light_count) {
-  std::vector<uint32_t> centers(light_count, pack::none);
-  std::vector<float> largest(light_count, 0.0f);
+std::vector<LightId> centers_by_light(const World& world, const LightList& list) {
+  std::vector<LightId> centers(world.lights().size(), pack::none);
+  std::vector<float> largest(centers.size(), 0.0f);
   for (size_t i = 0; i < list.center.size(); ++i) {
-    if (list.share[i] <= largest[list.pack_light[i]]) continue;
-    largest[list.pack_light[i]] = list.share[i];
-    centers[list.pack_light[i]] = list.center[i];
+    if (list.share[i] <= largest[list.light_id[i]]) continue;
+    largest[list.light_id[i]] = list.share[i];
+    centers[list.light_id[i]] = list.center[i];
   }
   return centers;
 }
 
-std::vector<MapMeasures> measure_maps(std::span<const pack::Light> lights, const LightList& list, const Recipe& recipe,
+std::vector<MapMeasures> measure_maps(const World& world, const LightList& list, const Recipe& recipe,
                                       const Camera& camera) {
+  const auto lights = world.lights();
   const lights::ClusterSettings settings = cluster_settings(recipe, camera);
   const auto placed = [&](uint32_t light) {
     return is_directional(lights[light]) ? far_cluster_light(lights[light], recipe.z_far_m)
@@ -295,7 +318,7 @@ std::vector<MapMeasures> measure_maps(std::span<const pack::Light> lights, const
     const glm::vec3 center_ws = placed(list.center[map.first_light]).position_ws;
     MapMeasures of_map{map.is_directional ? recipe.d_init_m : lights::scaled_d_min(settings, center_ws), 0.0f};
     for (uint32_t i = map.first_light; i < map.first_light + map.light_count; ++i) {
-      const double distance_m = lights::metric_distance_m(placed(list.pack_light[i]), center_ws);
+      const double distance_m = lights::metric_distance_m(placed(list.light_id[i]), center_ws);
       of_map.spread_m = std::max(of_map.spread_m,
                                  static_cast<float>(std::min(distance_m, double{std::numeric_limits<float>::max()})));
     }
@@ -305,18 +328,18 @@ std::vector<MapMeasures> measure_maps(std::span<const pack::Light> lights, const
 }
 
 double expected_rmse(const LightList& list, const Recipe& recipe, const Camera& camera, float aspect,
-                     const SelectAids& aids) {
-  if (!aids.surroundings) throw std::invalid_argument("expected_rmse: needs to know the lights' surroundings");
-  std::vector<uint32_t> in_view = list.pack_light;
+                     const SelectionInputs& inputs) {
+  if (!inputs.surroundings) throw std::invalid_argument("expected_rmse: needs to know the lights' surroundings");
+  std::vector<uint32_t> in_view = list.light_id;
   in_view.insert(in_view.end(), list.center.begin(), list.center.end());  // held ones may be out of view
   std::sort(in_view.begin(), in_view.end());
   in_view.erase(std::unique(in_view.begin(), in_view.end()), in_view.end());
   std::vector<MapMember> members;
   for (size_t i = 0; i < list.lights.size(); ++i)
-    members.push_back({index_in(in_view, list.pack_light[i]), index_in(in_view, list.center[i]),
+    members.push_back({index_in(in_view, list.light_id[i]), index_in(in_view, list.center[i]),
                        added_radius_m(list, list.lights[i].map), list.share[i]});
-  return aids.surroundings->by_error().expected_rmse(
-      in_view, members, {camera, aspect, aids.ambient, aids.headlight, aids.exposure_ev}, recipe);
+  return inputs.surroundings->by_error().expected_rmse(
+      in_view, members, {camera, aspect, inputs.ambient, inputs.headlight, inputs.exposure_ev}, recipe);
 }
 
 }  // namespace chandelier

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "light_near.h"
 #include "lights/mean_materials.h"
 #include "lights/pack_lights.h"
+#include "lights/search_stopped.h"
 
 namespace chandelier {
 namespace {
@@ -86,12 +88,20 @@ SeenPlace seen_place(const rays::Hit& hit, const glm::vec3& eye_ws, const glm::v
   return {eye_ws + way * hit.distance_m + normal * (lift * hit.distance_m), normal};
 }
 
-LightSamples::LightSamples(const SampledScene& scene, std::span<const uint32_t> lights, const Camera& camera,
-                           float aspect, const SampleSettings& settings)
-    : scene_(scene), numbers_(lights.begin(), lights.end()) {
+SampledLights sampled_lights(const World& world, std::span<const LightId> ids) {
+  SampledLights lights;
+  for (const LightId id : ids) lights.shadowed.push_back(world.lights()[id]);
+  for (LightId id = 0; id < world.lights().size(); ++id)
+    if (world.has_light(id) && world.lights()[id].shadowless != 0) lights.shadowless.push_back(world.lights()[id]);
+  return lights;
+}
+
+LightSamples::LightSamples(const SampledScene& scene, SampledLights lights, const Camera& camera, float aspect,
+                           const SampleSettings& settings, const std::stop_token& stop)
+    : scene_(scene), lights_(std::move(lights)) {
   place_points(camera, aspect, settings);
-  sees_.assign(numbers_.size() * points_.size(), unknown);
-  light_points(camera);
+  sees_.assign(lights_.shadowed.size() * points_.size(), unknown);
+  light_points(camera, stop);
   expose(settings.exposure_ev);
 }
 
@@ -129,9 +139,10 @@ glm::vec3 LightSamples::added_by(const pack::Light& light, uint32_t p, const Cam
   return in.illuminance * n_dot_l * reflected(scene_.materials[material_[p]], point.normal_ws, to_eye, in.to_light);
 }
 
-void LightSamples::light_points(const Camera& camera) {
-  reach_.resize(numbers_.size());
-  for (uint32_t i = 0; i < numbers_.size(); ++i) {
+void LightSamples::light_points(const Camera& camera, const std::stop_token& stop) {
+  reach_.resize(lights_.shadowed.size());
+  for (uint32_t i = 0; i < lights_.shadowed.size(); ++i) {
+    stop_if_asked(stop);
     for (uint32_t p = 0; p < points_.size(); ++p) {
       const glm::vec3 added = added_by(light(i), p, camera);
       if (luminance(added) <= 0.0f) continue;
@@ -139,8 +150,7 @@ void LightSamples::light_points(const Camera& camera) {
       if (sees(i, p)) points_[p].reference += added;
     }
   }
-  for (const pack::Light& shadowless : scene_.pack.lights) {
-    if (shadowless.shadowless == 0) continue;
+  for (const pack::Light& shadowless : lights_.shadowless) {
     for (uint32_t p = 0; p < points_.size(); ++p) {
       const glm::vec3 added = added_by(shadowless, p, camera);
       points_[p].unshadowable += added;

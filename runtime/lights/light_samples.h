@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the camera sees, by a few points of it: what each light adds there, and which lights see them. From the pack
-// alone: no Vulkan.
+// What the camera sees, by a few points of it: what each light adds there, and which lights see them. By rays on the
+// CPU.
 #pragma once
 
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
-#include "frame/camera.h"
 #include "lights/mean_materials.h"
 #include "pack_schema.h"
 #include "rays/pack_rays.h"
+#include "view/camera.h"
+#include "world/world.h"
 
 namespace chandelier {
 
-/// What points are taken from; made once for a pack. What it refers to must outlive it.
+/// What points are taken from; made once for a pack. The rays must outlive it.
 struct SampledScene {
-  SampledScene(const pack::View& view, const rays::PackRays& through)
-      : pack(view), rays(through), materials(mean_materials(view)) {}
+  SampledScene(const pack::View& pack, const rays::PackRays& through)
+      : rays(through), materials(mean_materials(pack)) {}
 
-  pack::View pack;
   const rays::PackRays& rays;
   std::vector<MeanMaterial> materials;
 };
@@ -44,6 +45,14 @@ struct Incoming {
 Incoming incoming(const pack::Light& light, const glm::vec3& place_ws);
 /// Whether a light sees a place, were its range endless. Casts one ray.
 bool sees(const rays::PackRays& rays, const pack::Light& light, const glm::vec3& place_ws);
+
+/// The lights that samples are taken of: copies, so that a search may go on while the world changes.
+struct SampledLights {
+  std::vector<pack::Light> shadowed;
+  std::vector<pack::Light> shadowless;
+};
+/// `ids`: of lights that throw a shadow. Those that throw none are all of the world's.
+SampledLights sampled_lights(const World& world, std::span<const LightId> ids);
 
 struct SampleSettings {
   uint32_t columns = 64;  // of the grid of points over the picture
@@ -69,12 +78,14 @@ class LightSamples {
     glm::vec3 radiance;
   };
 
-  /// `lights` are numbers in the pack, of the lights in view. `scene` must outlive this.
-  LightSamples(const SampledScene& scene, std::span<const uint32_t> lights, const Camera& camera, float aspect,
-               const SampleSettings& settings);
+  /// `scene` must outlive this. Throws SearchStopped.
+  LightSamples(const SampledScene& scene, SampledLights lights, const Camera& camera, float aspect,
+               const SampleSettings& settings, const std::stop_token& stop = {});
 
-  std::span<const uint32_t> lights() const { return numbers_; }
-  const pack::Light& light(uint32_t light) const { return scene_.pack.lights[numbers_[light]]; }
+  const SampledLights& sampled_lights() const { return lights_; }
+  /// That throw a shadow.
+  std::span<const pack::Light> lights() const { return lights_.shadowed; }
+  const pack::Light& light(uint32_t light) const { return lights_.shadowed[light]; }
   std::span<const Point> points() const { return points_; }
   std::span<const Reach> reach(uint32_t light) const { return reach_[light]; }
   uint32_t cell_count() const { return cell_count_; }  // points, and cells of the grid that see nothing or no light
@@ -98,11 +109,11 @@ class LightSamples {
 
   void place_points(const Camera& camera, float aspect, const SampleSettings& settings);
   glm::vec3 added_by(const pack::Light& light, uint32_t point, const Camera& camera) const;
-  void light_points(const Camera& camera);
+  void light_points(const Camera& camera, const std::stop_token& stop);
   void expose(const std::optional<float>& exposure_ev);
 
   const SampledScene& scene_;
-  std::vector<uint32_t> numbers_;
+  SampledLights lights_;
   std::vector<Point> points_;
   std::vector<uint32_t> material_;  // of each point
   std::vector<std::vector<Reach>> reach_;

@@ -7,11 +7,11 @@
 
 namespace chandelier {
 
-MapCounter::MapCounter(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
-                       bool out_of_view) {
+MapCounter::MapCounter(const World& world, const Recipe& recipe, const Camera& camera, float aspect, bool out_of_view) {
+  const auto lights = world.lights();
   std::vector<lights::ClusterLight> near, far;
   std::vector<uint64_t> groups;  // of the two kinds
-  for (const uint32_t i : lights_in_view(lights, camera, aspect, out_of_view)) {
+  for (const uint32_t i : lights_in_view(world, camera, aspect, out_of_view)) {
     if (lights[i].shadowless != 0) continue;
     const bool directional = is_directional(lights[i]);
     (directional ? far : near)

@@ -2,22 +2,20 @@
 // How many maps the select stage would make.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "frame/camera.h"
-#include "frame/recipe.h"
+#include "recipe_schema.h"
 #include "lights/cluster_counter.h"
-#include "pack_schema.h"
+#include "view/camera.h"
+#include "world/world.h"
 
 namespace chandelier {
 
-/// Counts the maps that select_lights() makes of the same, for one d_init after another: in less time than a list
-/// takes. For light clusters without walls, held or previous centres.
+/// Counts the maps that select_lights() makes of the same input, for one d_init after another, in less time than a
+/// list takes. For light clusters without walls, held or previous centres.
 class MapCounter {
  public:
-  MapCounter(std::span<const pack::Light> lights, const Recipe& recipe, const Camera& camera, float aspect,
-             bool out_of_view);
+  MapCounter(const World& world, const Recipe& recipe, const Camera& camera, float aspect, bool out_of_view);
 
   size_t in_view() const { return in_view_; }  // lights that throw a shadow
   bool group_shares() const { return group_shares_; }

@@ -13,7 +13,7 @@ namespace {
 constexpr size_t most_shares = 3;
 constexpr float least_share = 0.05f;
 constexpr double least_gain = 0.003;  // of the squared error, for which a light is worth shading more than once
-constexpr uint32_t most_rounds = 12;
+constexpr uint32_t most_passes = 12;
 constexpr uint32_t most_candidates = 16;  // nearest centres that a light may take shares of
 
 struct Share {
@@ -191,19 +191,19 @@ void Sharing::tidy(uint32_t light) {
 }  // namespace
 
 std::vector<MapMember> share_out(const LightSamples& samples, std::span<const uint32_t> center,
-                                 std::span<const std::vector<uint32_t>> lenders) {
-  std::vector<std::vector<uint32_t>> candidates(center.size());
+                                 std::span<const std::vector<uint32_t>> candidates) {
+  std::vector<std::vector<uint32_t>> near(center.size());
   for (uint32_t light = 0; light < center.size(); ++light)
-    for (const uint32_t other : lenders[light])
-      if (center[light] != light && center[other] == other && candidates[light].size() < most_candidates)
-        candidates[light].push_back(other);
+    for (const uint32_t other : candidates[light])
+      if (center[light] != light && center[other] == other && near[light].size() < most_candidates)
+        near[light].push_back(other);
 
   Sharing sharing(samples, center);
   const double unshared = sharing.error();
   bool moved = true;
-  for (uint32_t round = 0; moved && round < most_rounds; ++round) {
+  for (uint32_t pass = 0; moved && pass < most_passes; ++pass) {
     moved = false;
-    for (uint32_t light = 0; light < center.size(); ++light) moved = sharing.improve(light, candidates[light]) || moved;
+    for (uint32_t light = 0; light < center.size(); ++light) moved = sharing.improve(light, near[light]) || moved;
   }
   for (uint32_t light = 0; light < center.size(); ++light) sharing.tidy(light);
 

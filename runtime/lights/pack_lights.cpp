@@ -2,34 +2,25 @@
 #include "lights/pack_lights.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace chandelier {
-namespace {
-
-std::vector<uint32_t> all_numbers(size_t count) {
-  std::vector<uint32_t> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), 0u);
-  return numbers;
-}
-
-}  // namespace
-
-std::vector<uint32_t> lights_in_view(std::span<const pack::Light> lights, const Camera& camera, float aspect,
-                                     bool out_of_view) {
-  if (out_of_view) return all_numbers(lights.size());
+std::vector<LightId> lights_in_view(const World& world, const Camera& camera, float aspect, bool out_of_view) {
   const FrustumPlanes planes = frustum_planes(camera, aspect);
-  std::vector<uint32_t> in_view;
-  for (uint32_t i = 0; i < lights.size(); ++i)
-    if (is_directional(lights[i]) || intersects(planes, lights[i].position_ws, lights[i].range_m)) in_view.push_back(i);
+  std::vector<LightId> in_view;
+  for (LightId id = 0; id < world.lights().size(); ++id) {
+    const pack::Light& light = world.lights()[id];
+    if (world.has_light(id) &&
+        (out_of_view || is_directional(light) || intersects(planes, light.position_ws, light.range_m)))
+      in_view.push_back(id);
+  }
   return in_view;
 }
 
-std::vector<uint32_t> take_shadowless(std::span<const pack::Light> lights, std::vector<uint32_t>& numbers) {
-  const auto end = std::stable_partition(numbers.begin(), numbers.end(),
-                                         [&](uint32_t number) { return lights[number].shadowless == 0; });
-  const std::vector<uint32_t> shadowless(end, numbers.end());
-  numbers.erase(end, numbers.end());
+std::vector<LightId> take_shadowless(const World& world, std::vector<LightId>& ids) {
+  const auto end =
+      std::stable_partition(ids.begin(), ids.end(), [&](LightId id) { return world.lights()[id].shadowless == 0; });
+  const std::vector<LightId> shadowless(end, ids.end());
+  ids.erase(end, ids.end());
   return shadowless;
 }
 

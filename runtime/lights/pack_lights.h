@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pack's lights, as the select stage and shading take them.
+// Records of lights, as the select stage and shading take them.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "frame/camera.h"
-#include "frame/recipe.h"
+#include "recipe_schema.h"
 #include "frame_schema.h"
 #include "lights/light_clusters.h"
 #include "pack_schema.h"
+#include "view/camera.h"
+#include "world/world.h"
 
 namespace chandelier {
 
@@ -17,12 +17,11 @@ inline bool is_directional(const pack::Light& light) {
   return light.type == pack::LightType::directional;
 }
 
-/// Numbers in the pack, ascending, of lights whose sphere meets the view frustum (LightCluster §3.1.2), and of all
-/// directional ones; with `out_of_view` of all.
-std::vector<uint32_t> lights_in_view(std::span<const pack::Light> lights, const Camera& camera, float aspect,
-                                     bool out_of_view);
-/// Takes those that throw no shadow out of `numbers`, and returns them. Both stay in order.
-std::vector<uint32_t> take_shadowless(std::span<const pack::Light> lights, std::vector<uint32_t>& numbers);
+/// Ascending ids of lights whose sphere meets the view frustum (LightCluster §3.1.2), and of all directional ones; with
+/// `out_of_view` of all.
+std::vector<LightId> lights_in_view(const World& world, const Camera& camera, float aspect, bool out_of_view);
+/// Takes those that throw no shadow out of `ids`, and returns them. Both stay in order.
+std::vector<LightId> take_shadowless(const World& world, std::vector<LightId>& ids);
 
 /// Of no map.
 frame::FrameLight frame_light(const pack::Light& light);

@@ -3,18 +3,26 @@
 
 namespace chandelier {
 
+// As all instances stand now.
 const rays::PackRays& Surroundings::rays() {
-  if (!rays_) rays_.emplace(pack_);
+  if (!rays_) rays_.emplace(world_.pack());
+  if (world_.instances_version() == instances_) return *rays_;
+  if (by_error_) by_error_->stop();  // its thread reads them
+  for (const InstanceId id : world_.instances_changed_since(instances_))
+    rays_->set_transform(id, world_.instances()[id].world_from_local);
+  instances_ = world_.instances_version();
   return *rays_;
 }
 
 lights::Walls& Surroundings::walls() {
-  if (!walls_) walls_.emplace(pack_, rays());
+  const rays::PackRays& through = rays();
+  if (!walls_) walls_.emplace(world_, through);
   return *walls_;
 }
 
 ErrorDriven& Surroundings::by_error() {
-  if (!by_error_) by_error_.emplace(pack_, rays());
+  const rays::PackRays& through = rays();
+  if (!by_error_) by_error_.emplace(world_, through);
   return *by_error_;
 }
 

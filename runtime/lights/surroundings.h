@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What selections of lights look up around a pack's lights, made when one first asks and remembered from frame to
-// frame.
+// What selections look up around a world's lights, made when one first asks, kept from frame to frame, and brought up
+// to date where the world has changed.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,21 @@ namespace chandelier {
 
 class Surroundings {
  public:
-  /// What `pack` points to must outlive this.
-  explicit Surroundings(const pack::View& pack) : pack_(pack) {}
+  /// `world` must outlive this.
+  explicit Surroundings(const World& world) : world_(world) {}
   Surroundings(const Surroundings&) = delete;
 
   lights::Walls& walls();
   ErrorDriven& by_error();
+  /// An error search that ran beside the frames has ended: selecting again may select otherwise.
+  bool has_news() const { return by_error_ && by_error_->has_news(); }
 
  private:
   const rays::PackRays& rays();
 
-  pack::View pack_;
+  const World& world_;
   std::optional<rays::PackRays> rays_;
+  Version instances_ = 0;  // that rays_ stand as
   std::optional<lights::Walls> walls_;
   std::optional<ErrorDriven> by_error_;
 };

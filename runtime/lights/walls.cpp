@@ -2,6 +2,8 @@
 #include "lights/walls.h"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace chandelier::lights {
@@ -28,22 +30,36 @@ bool wall_between(const rays::PackRays& rays, const glm::vec3& a_ws, const glm::
   return true;
 }
 
-bool Walls::find(WallTest test, uint32_t light, uint32_t other) {
-  const glm::vec3 &a_ws = pack_.lights[light].position_ws, &b_ws = pack_.lights[other].position_ws;
+// What an animation moves is in no voxel.
+void Walls::refuse_moved_voxels() const {
+  for (const InstanceId id : world_.instances_changed_since(0))
+    if (world_.instances()[id].dynamic == 0)
+      throw std::invalid_argument("walls voxels: instance " + std::to_string(id) +
+                                  " has moved, and the pack's voxels do not follow; use walls rays");
+}
+
+bool Walls::find(WallTest test, LightId light, LightId other) {
+  const glm::vec3 &a_ws = world_.lights()[light].position_ws, &b_ws = world_.lights()[other].position_ws;
   if (test == WallTest::none) return false;
   if (test == WallTest::rays) return wall_between(rays_, a_ws, b_ws);
-  if (!occupancy_) occupancy_.emplace(pack_);
+  refuse_moved_voxels();
+  if (!occupancy_) occupancy_.emplace(world_.pack());
   return occupancy_->between(a_ws, b_ws);
 }
 
-bool Walls::between(WallTest test, uint32_t light, uint32_t other) {
+bool Walls::between(WallTest test, LightId light, LightId other) {
   if (light > other) std::swap(light, other);
-  if (pack_.lights[light].dynamic || pack_.lights[other].dynamic) return find(test, light, other);
+  if (std::exchange(instances_, world_.instances_version()) != world_.instances_version())
+    for (auto& answers : known_) answers.clear();
+  const Version version = world_.light_version(light), other_version = world_.light_version(other);
   auto& answers = known_[static_cast<size_t>(test)];
   const uint64_t pair = uint64_t{light} << 32 | other;
   const auto known = answers.find(pair);
-  if (known != answers.end()) return known->second;
-  return answers.emplace(pair, find(test, light, other)).first->second;
+  if (known != answers.end() && known->second.light == version && known->second.other == other_version)
+    return known->second.is_blocked;
+  const bool is_blocked = find(test, light, other);
+  answers.insert_or_assign(pair, Known{version, other_version, is_blocked});
+  return is_blocked;
 }
 
 }  // namespace chandelier::lights

@@ -8,8 +8,9 @@
 #include <unordered_map>
 
 #include "lights/occupancy.h"
-#include "rays/pack_rays.h"
 #include "recipe_schema.h"
+#include "rays/pack_rays.h"
+#include "world/world.h"
 
 namespace chandelier::lights {
 
@@ -18,23 +19,30 @@ namespace chandelier::lights {
 /// either.
 bool wall_between(const rays::PackRays& rays, const glm::vec3& a_ws, const glm::vec3& b_ws);
 
-/// Answers for pairs of a pack's lights, and remembers them for lights that do not move.
+/// Answers for pairs of a world's lights, and remembers them until one of the two or an instance changes.
 class Walls {
  public:
-  /// What they refer to must outlive it.
-  Walls(const pack::View& pack, const rays::PackRays& rays) : pack_(pack), rays_(rays) {}
+  /// Both must outlive it. `rays` must stand as the world does.
+  Walls(const World& world, const rays::PackRays& rays) : world_(world), rays_(rays) {}
 
   /// Neither may be directional. The same whichever comes first. Throws std::invalid_argument where a pack without
-  /// voxels is asked for them.
-  bool between(WallTest test, uint32_t light, uint32_t other);
+  /// voxels is asked for them, or one of whose instances in voxels has moved, which voxels do not follow.
+  bool between(WallTest test, LightId light, LightId other);
 
  private:
-  bool find(WallTest test, uint32_t light, uint32_t other);
+  struct Known {
+    Version light;
+    Version other;
+    bool is_blocked;
+  };
+  bool find(WallTest test, LightId light, LightId other);
+  void refuse_moved_voxels() const;
 
-  pack::View pack_;
+  const World& world_;
   const rays::PackRays& rays_;
-  std::optional<Occupancy> occupancy_;           // made when first asked for
-  std::unordered_map<uint64_t, bool> known_[3];  // by WallTest; a pair is one number, the lower light above
+  std::optional<Occupancy> occupancy_;            // made when first asked for
+  Version instances_ = 0;                         // that known_ is of
+  std::unordered_map<uint64_t, Known> known_[3];  // by WallTest; a pair is one number, the lower light above
 };
 
 }  // namespace chandelier::lights

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kMostNames = 8;  // on stderr; --stats has them all
 
-std::string name_of(const pack::File& pack, uint32_t light) {
-  const std::string_view name = pack.text(pack.view().lights[light].name);
+std::string name_of(const pack::File& pack, const World& world, LightId light) {
+  const std::string_view name = pack.text(world.lights()[light].name);
   return name.empty() ? fmt::format("light {}", light) : std::string(name);
 }
 
@@ -57,31 +57,31 @@ void tell(const NamedRecipe& named, const Recipe& asked, const BudgetedPlan& pla
 
 }  // namespace
 
-std::vector<SharedMap> shared_maps(const pack::File& pack, const LightList& list) {
-  const std::vector<uint32_t> centers = centers_of_pack_lights(list, pack.view().lights.size());
+std::vector<SharedMap> shared_maps(const pack::File& pack, const World& world, const LightList& list) {
+  const std::vector<uint32_t> centers = centers_by_light(world, list);
   std::vector<SharedMap> shared;
   for (std::size_t i = 0; i < list.lights.size(); ++i)
-    if (list.center[i] != list.pack_light[i] && list.center[i] == centers[list.pack_light[i]])
-      shared.push_back({name_of(pack, list.pack_light[i]), name_of(pack, list.center[i])});
+    if (list.center[i] != list.light_id[i] && list.center[i] == centers[list.light_id[i]])
+      shared.push_back({name_of(pack, world, list.light_id[i]), name_of(pack, world, list.center[i])});
   return shared;
 }
 
 void apply_budget(const Budget& budget, NamedRecipe& named, RenderSettings& settings, Predictor& predictor,
-                  const pack::File& pack) {
+                  const pack::File& pack, const World& world) {
   if (!budget.is_given() || named.recipe.select == Select::per_light) return;
   const BudgetedPlan plan = keep_budget(predictor, settings, budget);
   const Recipe asked = std::exchange(named.recipe, plan.recipe);
   settings.recipe = plan.recipe;
-  named.shared_maps = shared_maps(pack, plan.prediction.plan.list);
+  named.shared_maps = shared_maps(pack, world, plan.prediction.plan.list);
   named.expected_rmse = plan.expected_rmse;
   tell(named, asked, plan, budget);
 }
 
-void apply_budget(Options& options, const NamedCamera& camera, const pack::File& pack) {
-  Predictor predictor(pack.view());
+void apply_budget(Options& options, const NamedCamera& camera, const pack::File& pack, const World& world) {
+  Predictor predictor(world);
   for (NamedRecipe& named : options.recipes) {
     RenderSettings settings = render_settings(options, named.recipe, camera.camera, {});
-    apply_budget(options.budget, named, settings, predictor, pack);
+    apply_budget(options.budget, named, settings, predictor, pack, world);
   }
 }
 

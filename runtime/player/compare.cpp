@@ -34,17 +34,17 @@ struct Side {
 
 // Where the machine slows down for a while, both sides get their share of it. What keeps a budget depends on the
 // exposure: b's is planned once a's is known.
-void draw_in_turns(Renderer& renderer, const pack::File& pack, const Budget& budget, uint32_t frames, Side& a,
-                   Side& b) {
-  Predictor predictor(pack.view());
-  apply_budget(budget, a.named, a.settings, predictor, pack);
+void draw_in_turns(Renderer& renderer, const pack::File& pack, const World& world, const Budget& budget,
+                   uint32_t frames, Side& a, Side& b) {
+  Predictor predictor(world);
+  apply_budget(budget, a.named, a.settings, predictor, pack, world);
   renderer.warm_up(a.settings);
   for (uint32_t i = 0; i < frames; ++i) {
     a.frames.push_back(renderer.draw(a.settings));
     if (i + 1 == frames) a.picture = renderer.read_back();
     if (i == 0) {
       b.settings.exposure_ev = a.frames.front().exposure_ev;
-      apply_budget(budget, b.named, b.settings, predictor, pack);
+      apply_budget(budget, b.named, b.settings, predictor, pack, world);
       renderer.warm_up(b.settings);
     }
     b.frames.push_back(renderer.draw(b.settings));
@@ -130,7 +130,7 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
           {"difference", {{"image", comparison.difference_image}, {"scale_shown", comparison.heat_scale}}}};
 }
 
-void run_comparison(const Options& options, const NamedCamera& camera, const pack::File& pack,
+void run_comparison(const Options& options, const NamedCamera& camera, const pack::File& pack, const World& world,
                     const gpu::Device& device, Renderer& renderer, const VisibilitySource& visibility) {
   make_folder(options.report);
   Side a{.named = options.recipes[0]};
@@ -138,7 +138,7 @@ void run_comparison(const Options& options, const NamedCamera& camera, const pac
   a.settings = render_settings(options, a.named.recipe, camera.camera, visibility);
   b.settings = render_settings(options, b.named.recipe, camera.camera, visibility);
   const bool truth = std::any_of(options.recipes.begin(), options.recipes.end(), traces_rays);
-  draw_in_turns(renderer, pack, options.budget,
+  draw_in_turns(renderer, pack, world, options.budget,
                 options.frames.value_or(truth ? kFramesBesideTruth : kFramesUnlessAsked), a, b);
 
   Comparison comparison;

@@ -45,7 +45,7 @@ nlohmann::ordered_json to_json(const Comparison& comparison);
 
 /// Draws both recipes in turns, within the budget, and writes pictures, difference.png, flip.png, comparison.json and
 /// report.html. Throws.
-void run_comparison(const Options& options, const NamedCamera& camera, const pack::File& pack,
+void run_comparison(const Options& options, const NamedCamera& camera, const pack::File& pack, const World& world,
                     const gpu::Device& device, Renderer& renderer, const VisibilitySource& visibility);
 
 }  // namespace chandelier::player

@@ -42,8 +42,8 @@ LiveScene::LiveScene(const Options& asked, std::unique_ptr<const Scene> scene, g
 RenderSettings LiveScene::put_on_device(const Scene& scene) {
   device_->vkDeviceWaitIdle(device_.handle);
   on_device_.reset();
-  OnDevice made{.visibility = visibility_for(scene.options.recipes, scene.pack),
-                .renderer = Renderer(device_, scene.pack, renderer_options(scene.options))};
+  OnDevice made{.visibility = visibility_for(scene.options.recipes, scene.world),
+                .renderer = Renderer(device_, scene.world, renderer_options(scene.options))};
   const RenderSettings wanted =
       render_settings(scene.options, scene.options.recipes.front().recipe, scene.camera.camera, made.visibility);
   made.renderer.warm_up(wanted);

@@ -58,12 +58,12 @@ ValidationLog draw(const Options& asked, std::unique_ptr<const Scene> scene) {
     return device.validation_log();
   }
 #endif
-  const auto& [stamp, pack, options, camera] = *scene;
+  const auto& [stamp, pack, world, options, camera] = *scene;
   gpu::Device device(device_options);
-  Renderer renderer(device, pack, renderer_options(options));
-  const VisibilitySource visibility = visibility_for(options.recipes, pack);
+  Renderer renderer(device, world, renderer_options(options));
+  const VisibilitySource visibility = visibility_for(options.recipes, world);
   if (options.mode == Mode::headless) run_headless(options, camera, pack, device, renderer, visibility);
-  if (options.mode == Mode::compare) run_comparison(options, camera, pack, device, renderer, visibility);
+  if (options.mode == Mode::compare) run_comparison(options, camera, pack, world, device, renderer, visibility);
   if (options.mode == Mode::path) run_path(options, pack, device, renderer, visibility);
   return device.validation_log();
 }
@@ -74,7 +74,7 @@ int run(const Options& asked) {
   if (!asked.stats.empty()) check_writable(asked.stats);
   auto scene = std::make_unique<const Scene>(asked);
   if (asked.mode == Mode::predict) {
-    run_prediction(scene->options, scene->camera, scene->pack);
+    run_prediction(scene->options, scene->camera, scene->pack, scene->world);
     return 0;
   }
   const ValidationLog log = draw(asked, std::move(scene));

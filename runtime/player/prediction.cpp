@@ -35,9 +35,9 @@ void print_table(const Run& run) {
 
 }  // namespace
 
-void run_prediction(const Options& options, const NamedCamera& camera, const pack::File& pack) {
+void run_prediction(const Options& options, const NamedCamera& camera, const pack::File& pack, const World& world) {
   const NamedRecipe& named = options.recipes.front();
-  Predictor predictor(pack.view());
+  Predictor predictor(world);
   Run run;
   run.pack = options.pack.filename().string();
   run.preset = named.preset;
@@ -46,7 +46,7 @@ void run_prediction(const Options& options, const NamedCamera& camera, const pac
   const Prediction prediction = predictor.predict(run.settings);
   run.stats = prediction.stats;
   run.expected_rmse = predictor.expected_rmse(run.settings, prediction.plan);
-  run.shared_maps = shared_maps(pack, prediction.plan.list);
+  run.shared_maps = shared_maps(pack, world, prediction.plan.list);
   print_table(run);
   if (!options.stats.empty()) write_file(options.stats, prediction_json(run).dump(2) + "\n");
 }

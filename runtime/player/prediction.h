@@ -8,6 +8,6 @@
 namespace chandelier::player {
 
 /// Prints a table on stdout and, where asked, writes the JSON. Opens no device. Throws.
-void run_prediction(const Options& options, const NamedCamera& camera, const pack::File& pack);
+void run_prediction(const Options& options, const NamedCamera& camera, const pack::File& pack, const World& world);
 
 }  // namespace chandelier::player

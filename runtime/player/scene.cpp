@@ -44,10 +44,11 @@ FileStamp stamp_of(const std::filesystem::path& path) {
 Scene::Scene(const Options& asked)
     : stamp(stamp_of(asked.pack)),
       pack(asked.pack, 0, asked.mode == Mode::predict ? pack::Hold::mapped : pack::Hold::copied),
+      world(pack),
       options(with_headlight(asked, pack.view())),
       camera(camera_of(asked, pack)) {
   warn_of_no_lights(asked, options, pack.view());
-  if (options.mode != Mode::compare) apply_budget(options, camera, pack);
+  if (options.mode != Mode::compare) apply_budget(options, camera, pack, world);
 }
 
 }  // namespace chandelier::player

@@ -8,6 +8,7 @@
 
 #include "player/camera.h"
 #include "player/options.h"
+#include "world/world.h"
 
 namespace chandelier::player {
 
@@ -31,6 +32,7 @@ struct Scene {
 
   FileStamp stamp;  // from before the file was read
   pack::File pack;  // a copy where it is drawn: what is written into the file after it was checked must not be seen
+  World world;      // of the pack
   Options options;  // with the headlight that the pack needs, and recipes that keep the budget
   NamedCamera camera;
 };

@@ -10,9 +10,9 @@
 namespace chandelier::player {
 
 VisibilitySource visibility_for([[maybe_unused]] std::span<const NamedRecipe> recipes,
-                                [[maybe_unused]] const pack::File& pack) {
+                                [[maybe_unused]] const World& world) {
 #ifdef CHANDELIER_EMBREE
-  if (std::any_of(recipes.begin(), recipes.end(), traces_rays)) return truth::ray_traced_visibility(pack.view());
+  if (std::any_of(recipes.begin(), recipes.end(), traces_rays)) return truth::ray_traced_visibility(world);
 #endif
   return {};
 }

@@ -5,11 +5,12 @@
 #include <span>
 
 #include "player/options.h"
+#include "world/world.h"
 
 namespace chandelier::player {
 
-/// What answers filter `rays` for this pack; empty where no recipe asks. parse_options() refuses those that ask in a
-/// build without Embree. Throws std::runtime_error, one line.
-VisibilitySource visibility_for(std::span<const NamedRecipe> recipes, const pack::File& pack);
+/// What answers filter `rays` for this world, which must outlive it; empty where no recipe asks. parse_options()
+/// refuses those that ask in a build without Embree. Throws std::runtime_error, one line.
+VisibilitySource visibility_for(std::span<const NamedRecipe> recipes, const World& world);
 
 }  // namespace chandelier::player

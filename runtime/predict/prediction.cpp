@@ -24,27 +24,22 @@ RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe) 
 
 }  // namespace
 
-Predictor::Predictor(const pack::View& pack) : pack_(pack), surroundings_(pack) {
-  if (pack.bake_info) bounds_ = {pack.bake_info->bounds_min_ws, pack.bake_info->bounds_max_ws};
-}
-
 Prediction Predictor::plan(const RenderSettings& settings) {
   Prediction prediction;
-  prediction.plan =
-      plan_frame(pack_.lights, bounds_, settings, limits_without_device(pack_, settings.recipe), &surroundings_);
-  prediction.stats = planned_stats(prediction.plan, settings, pack_.lights.size());
+  prediction.plan = plan_frame(world_, settings, limits_without_device(world_.pack(), settings.recipe), &surroundings_);
+  prediction.stats = planned_stats(world_, prediction.plan, settings);
   return prediction;
 }
 
 LightList Predictor::lights_in_view(const RenderSettings& settings) const {
   Recipe recipe = settings.recipe;
   recipe.select = Select::per_light;
-  return select_lights(pack_.lights, recipe, settings.camera, aspect_of(settings),
+  return select_lights(world_, recipe, settings.camera, aspect_of(settings),
                        {.out_of_view = settings.lights_out_of_view});
 }
 
 double Predictor::expected_rmse(const RenderSettings& settings, const FramePlan& plan) {
-  if (plan.recipe.filter == Filter::hard && plan.list.center == plan.list.pack_light) return 0.0;  // the reference
+  if (plan.recipe.filter == Filter::hard && plan.list.center == plan.list.light_id) return 0.0;  // the reference
   return chandelier::expected_rmse(plan.list, plan.recipe, settings.camera, aspect_of(settings),
                                    {.surroundings = &surroundings_,
                                     .ambient = settings.ambient,
@@ -55,7 +50,7 @@ double Predictor::expected_rmse(const RenderSettings& settings, const FramePlan&
 Prediction Predictor::predict(const RenderSettings& settings) {
   Prediction prediction = plan(settings);
   const std::span<const frame::ShadowView> views(prediction.plan.views);
-  const CasterCounts counts = count_casters(settings.recipe.cull, views.first(prediction.stats.shadow_views), pack_);
+  const CasterCounts counts = count_casters(settings.recipe.cull, views.first(prediction.stats.shadow_views), world_);
   prediction.stats.shadow_draws = counts.draws;
   prediction.stats.shadow_triangles = counts.triangles;
   return prediction;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame will take, from the pack alone: no device, nothing drawn.
+// What a frame will take, without a device and without drawing it.
 #pragma once
 
 #include "frame/frame_plan.h"
@@ -13,18 +13,19 @@ struct Prediction {
   FrameStats stats;  // counters only
 };
 
-/// Predicts frames of one pack.
+/// Predicts frames of a world as it is when asked.
 class Predictor {
  public:
-  /// What `pack` points to must outlive it.
-  explicit Predictor(const pack::View& pack);
+  /// `world` must outlive it.
+  explicit Predictor(const World& world) : world_(world), surroundings_(world) {}
+  explicit Predictor(World&& world) = delete;
 
   /// Lights, shadow maps and views alone: cheap enough to try many settings. The counters of draws and triangles are 0.
   Prediction plan(const RenderSettings& settings);
   /// Those of plan(), with a map for each.
   LightList lights_in_view(const RenderSettings& settings) const;
   /// Of shadow maps of plan().
-  ShadowMapCounter counter(const RenderSettings& settings) const { return {pack_.lights, settings}; }
+  ShadowMapCounter counter(const RenderSettings& settings) const { return {world_, settings}; }
   /// All counters of a frame.
   Prediction predict(const RenderSettings& settings);
   /// Of a frame planned with these settings: RMSE of the shown picture, 0 to 1, against one hard shadow map for each
@@ -32,8 +33,7 @@ class Predictor {
   double expected_rmse(const RenderSettings& settings, const FramePlan& plan);
 
  private:
-  pack::View pack_;
-  Bounds bounds_;
+  const World& world_;
   Surroundings surroundings_;
 };
 

@@ -11,6 +11,13 @@
 namespace chandelier::preview {
 namespace {
 
+// A world of lights alone.
+World world_of(const Lights& lights) {
+  pack::View pack;
+  pack.lights = lights.lights;
+  return World(pack);
+}
+
 // What the settings ask for, and what the budget leads to: the same where it is kept.
 struct Plans {
   Prediction wanted;
@@ -18,10 +25,8 @@ struct Plans {
   bool over_budget = false;
 };
 
-Plans plan(const Lights& lights, const RenderSettings& settings, const Budget& budget) {
-  pack::View pack;
-  pack.lights = lights.lights;
-  Predictor predictor(pack);
+Plans plan(const World& world, const RenderSettings& settings, const Budget& budget) {
+  Predictor predictor(world);
   Plans plans{.wanted = predictor.plan(settings)};
   plans.over_budget = !keeps(plans.wanted.stats, budget);
   plans.budgeted = keep_least_d_init(predictor, settings, budget, plans.wanted);
@@ -59,11 +64,11 @@ void put_lights(const Lights& lights, const Prediction& prediction, uint32_t cou
   }
 }
 
-void put_clusters(const Lights& lights, const LightList& list, const Recipe& recipe, const Camera& camera,
-                  ChandelierPreviewResult& result) {
+void put_clusters(const World& world, const Lights& lights, const LightList& list, const Recipe& recipe,
+                  const Camera& camera, ChandelierPreviewResult& result) {
   result.cluster_count = static_cast<uint32_t>(list.maps.size());
   if (!result.clusters) return;
-  const std::vector<MapMeasures> measures = measure_maps(lights.lights, list, recipe, camera);
+  const std::vector<MapMeasures> measures = measure_maps(world, list, recipe, camera);
   for (size_t i = 0; i < list.maps.size(); ++i) {
     const frame::ShadowMap& map = list.maps[i];
     result.clusters[i] = {.center = lights.numbers[list.center[map.first_light]],
@@ -101,10 +106,11 @@ void select(const ChandelierPreviewLights& lights, const ChandelierPreviewSettin
   read_camera(camera, settings);
   check(result, lights.count);
   const Lights read = read_lights(lights, asked.range_threshold_lx);
-  const Plans plans = plan(read, settings, read_budget(asked));
+  const World world = world_of(read);
+  const Plans plans = plan(world, settings, read_budget(asked));
   const Prediction& prediction = plans.budgeted.prediction;
   put_lights(read, prediction, lights.count, result);
-  put_clusters(read, prediction.plan.list, plans.budgeted.recipe, settings.camera, result);
+  put_clusters(world, read, prediction.plan.list, plans.budgeted.recipe, settings.camera, result);
   result.bill = bill(plans, put_over_budget(read, plans, lights.count, result.over_budget_of_light));
 }
 

@@ -42,7 +42,8 @@ bool walk(std::span<const pack::BvhNode> nodes, uint32_t first, uint32_t end, co
 
 }  // namespace
 
-PackRays::PackRays(const pack::View& pack) : pack_(pack) {
+PackRays::PackRays(const pack::View& pack)
+    : pack_(pack), instances_(pack.instances.begin(), pack.instances.end()), is_moved_(pack.instances.size()) {
   gather_triangles();
   gather_instances();
 }
@@ -69,15 +70,28 @@ void PackRays::gather_triangles() {
   }
 }
 
+// False where no tree leads to its triangles.
+bool PackRays::place(uint32_t instance) {
+  const glm::dmat4 m = world_from_local(instances_[instance]);
+  const bool has_tree = has_inverse(m) && pack_.meshes[instances_[instance].mesh].node_count > 0;
+  local_from_world_[instance] = has_tree ? glm::mat4x3(glm::inverse(m)) : glm::mat4x3(0.0f);
+  return has_tree;
+}
+
+void PackRays::set_transform(uint32_t instance, const std::array<glm::vec4, 3>& world_from_local) {
+  instances_[instance].world_from_local = world_from_local;
+  place(instance);
+  if (is_moved_[instance]) return;
+  is_moved_[instance] = true;
+  moved_.push_back(instance);
+}
+
 void PackRays::gather_instances() {
-  std::vector<bool> is_sorted(pack_.instances.size());
+  std::vector<bool> is_sorted(instances_.size());
   for (const pack::InstanceRef& item : pack_.instance_bvh_items) is_sorted[item.instance] = true;
-  std::vector<bool> is_loose(pack_.instances.size());
-  for (size_t i = 0; i < pack_.instances.size(); ++i) {
-    const glm::dmat4 m = world_from_local(pack_.instances[i]);
-    is_loose[i] = !has_inverse(m) || pack_.meshes[pack_.instances[i].mesh].node_count == 0;
-    local_from_world_.push_back(is_loose[i] ? glm::mat4x3(0.0f) : glm::mat4x3(glm::inverse(m)));
-  }
+  local_from_world_.resize(instances_.size());
+  std::vector<bool> is_loose(instances_.size());
+  for (uint32_t i = 0; i < instances_.size(); ++i) is_loose[i] = !place(i);
   std::vector<bool> is_listed = is_sorted;
   for (uint32_t i = 0; i < pack_.batch_instances.size(); ++i) {
     const uint32_t instance = pack_.batch_instances[i].instance;
@@ -96,12 +110,12 @@ bool PackRays::is_met(uint32_t batch, Meets meets) const {
 }
 
 bool PackRays::is_passed(uint32_t instance, Meets meets) const {
-  return meets == Meets::casters && pack_.instances[instance].shadowless != 0;
+  return meets == Meets::casters && instances_[instance].shadowless != 0;
 }
 
 std::array<glm::vec3, 3> PackRays::corners_ws(uint32_t instance, uint32_t first_index) const {
   std::array<glm::vec3, 3> corners;
-  const auto& rows = pack_.instances[instance].world_from_local;
+  const auto& rows = instances_[instance].world_from_local;
   for (uint32_t i = 0; i < 3; ++i) {
     const glm::vec4 p(pack_.positions[pack_.indices[first_index + i].vertex].position_ls, 1.0f);
     corners[i] = {glm::dot(rows[0], p), glm::dot(rows[1], p), glm::dot(rows[2], p)};
@@ -116,7 +130,7 @@ bool PackRays::cast_at_instance(uint32_t instance, const glm::vec3& from_ws, con
   const glm::mat4x3& m = local_from_world_[instance];
   if (m == glm::mat4x3(0.0f) || is_passed(instance, meets)) return false;  // zero: loose
   Ray ray_ls(m * glm::vec4(from_ws, 1.0f), m * glm::vec4(way_ws, 0.0f), ray.nearest, ray.farthest);
-  const pack::Mesh& mesh = pack_.meshes[pack_.instances[instance].mesh];
+  const pack::Mesh& mesh = pack_.meshes[instances_[instance].mesh];
   const uint32_t end = mesh.first_node + mesh.node_count;
   const bool stops = walk(pack_.triangle_bvh, mesh.first_node, end, ray_ls, [&](uint32_t item) {
     const Triangle& triangle = triangles_[item];
@@ -131,24 +145,35 @@ bool PackRays::cast_at_instance(uint32_t instance, const glm::vec3& from_ws, con
 }
 
 template <bool any_is_enough>
-bool PackRays::cast_at_batch(const pack::BatchInstance& draw, Meets meets, Ray& ray, Met& met) const {
-  if (!ray.meets_box(draw.bounds_min_ws, draw.bounds_max_ws)) return false;
-  if (is_passed(draw.instance, meets) || !is_met(draw.batch, meets)) return false;
-  const pack::Batch& batch = pack_.batches[draw.batch];
+bool PackRays::cast_at_batch(uint32_t instance, uint32_t number, Meets meets, Ray& ray, Met& met) const {
+  if (is_passed(instance, meets) || !is_met(number, meets)) return false;
+  const pack::Batch& batch = pack_.batches[number];
   for (uint32_t i = batch.first_index; i < batch.first_index + batch.index_count; i += 3) {
-    const float t = ray.meet_triangle(corners_ws(draw.instance, i));
+    const float t = ray.meet_triangle(corners_ws(instance, i));
     if (t == INFINITY) continue;
     ray.farthest = t;
-    met = {draw.instance, draw.batch, i};
+    met = {instance, number, i};
     if (any_is_enough) return true;
   }
+  return false;
+}
+
+// By its tree, or where it has none, or a matrix without inverse, by all its triangles.
+template <bool any_is_enough>
+bool PackRays::cast_at_moved(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets,
+                             Ray& ray, Met& met) const {
+  if (local_from_world_[instance] != glm::mat4x3(0.0f))
+    return cast_at_instance<any_is_enough>(instance, from_ws, way_ws, meets, ray, met);
+  const pack::Mesh& mesh = pack_.meshes[instances_[instance].mesh];
+  for (uint32_t batch = mesh.first_batch; batch < mesh.first_batch + mesh.batch_count; ++batch)
+    if (cast_at_batch<any_is_enough>(instance, batch, meets, ray, met)) return true;
   return false;
 }
 
 template <bool any_is_enough>
 bool PackRays::cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets, Ray& ray, Met& met) const {
   const auto at_instance = [&](uint32_t instance) {
-    return cast_at_instance<any_is_enough>(instance, from_ws, way_ws, meets, ray, met);
+    return !is_moved_[instance] && cast_at_instance<any_is_enough>(instance, from_ws, way_ws, meets, ray, met);
   };
   const auto node_count = static_cast<uint32_t>(pack_.instance_bvh.size());
   if (walk(pack_.instance_bvh, 0, node_count, ray,
@@ -156,8 +181,14 @@ bool PackRays::cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Meets mee
     return true;
   for (uint32_t instance : unsorted_instances_)
     if (at_instance(instance)) return true;
-  for (uint32_t number : loose_)
-    if (cast_at_batch<any_is_enough>(pack_.batch_instances[number], meets, ray, met)) return true;
+  for (uint32_t number : loose_) {
+    const pack::BatchInstance& draw = pack_.batch_instances[number];
+    if (!is_moved_[draw.instance] && ray.meets_box(draw.bounds_min_ws, draw.bounds_max_ws) &&
+        cast_at_batch<any_is_enough>(draw.instance, draw.batch, meets, ray, met))
+      return true;
+  }
+  for (uint32_t instance : moved_)
+    if (cast_at_moved<any_is_enough>(instance, from_ws, way_ws, meets, ray, met)) return true;
   return false;
 }
 

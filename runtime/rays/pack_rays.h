@@ -24,12 +24,16 @@ struct Hit {
 /// What a ray meets: all that is seen, or only what throws a shadow.
 enum class Meets { surfaces, casters };
 
-/// Answers for the triangles of a pack as it rests. What moves is met where it is before it moves. Alpha-masked
+/// Answers for the triangles of a pack, as it rests until set_transform() moves an instance. Alpha-masked
 /// materials are never met: what their texture leaves of them is not looked at. Safe to ask from several threads.
 class PackRays {
  public:
   /// What `pack` points to must outlive it. A pack without hierarchies is searched box by box, which is slow.
   explicit PackRays(const pack::View& pack);
+
+  /// Moves an instance: the rows of a 3×4 matrix. No thread may be asking meanwhile. Moved instances are tried one by
+  /// one, which takes time where there are many.
+  void set_transform(uint32_t instance, const std::array<glm::vec4, 3>& world_from_local);
 
   /// Does a triangle that throws a shadow lie strictly between? Both ends are shrunk by end_gap_m(), so that points on
   /// surfaces do not meet their own.
@@ -56,6 +60,7 @@ class PackRays {
 
   void gather_triangles();
   void gather_instances();
+  bool place(uint32_t instance);
   std::array<glm::vec3, 3> corners_ws(uint32_t instance, uint32_t first_index) const;
 
   // Each returns whether it may stop: the ray has met something, and that is enough. Shortens the ray to what it meets.
@@ -65,15 +70,21 @@ class PackRays {
   bool cast_at_instance(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets, Ray& ray,
                         Met& met) const;
   template <bool any_is_enough>
-  bool cast_at_batch(const pack::BatchInstance& draw, Meets meets, Ray& ray, Met& met) const;
+  bool cast_at_moved(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets, Ray& ray,
+                     Met& met) const;
+  template <bool any_is_enough>
+  bool cast_at_batch(uint32_t instance, uint32_t number, Meets meets, Ray& ray, Met& met) const;
   bool is_met(uint32_t batch, Meets meets) const;
   bool is_passed(uint32_t instance, Meets meets) const;
 
   pack::View pack_;
+  std::vector<pack::Instance> instances_;      // as they stand now
   std::vector<Triangle> triangles_;            // as triangle_bvh_items
   std::vector<glm::mat4x3> local_from_world_;  // one per instance
   std::vector<uint32_t> unsorted_instances_;   // with a tree of their own, but not in instance_bvh
   std::vector<uint32_t> loose_;                // batch instances that no tree leads to
+  std::vector<bool> is_moved_;   // of each instance: set_transform() was called, so the lists above are wrong
+  std::vector<uint32_t> moved_;  // those instances
 };
 
 }  // namespace chandelier::rays

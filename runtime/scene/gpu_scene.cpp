@@ -65,16 +65,16 @@ void upload_runs(Uploads& upload, const pack::View& pack, GpuScene& scene) {
 
 }  // namespace
 
-GpuScene upload_scene(const gpu::Device& device, const pack::File& file, const UploadOptions& options) {
-  const pack::View& pack = file.view();
+GpuScene upload_scene(const gpu::Device& device, const World& world, const UploadOptions& options) {
+  const pack::View& pack = world.pack();
   Uploads upload{device, {device, bytes_of(pack), options.progress}};
   GpuScene scene;
   scene.positions = upload(pack.positions, vertex_use, "positions");
   scene.vertex_attributes = upload(pack.vertex_attributes, vertex_use, "vertex attributes");
   scene.indices = upload(pack.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices");
   scene.batches = upload(pack.batches, storage_use, "batches");
-  scene.instances = upload(pack.instances, storage_use, "instances");
-  scene.batch_instances = upload(pack.batch_instances, storage_use, "batch instances");
+  scene.instances = upload(world.instances(), storage_use, "instances");
+  scene.batch_instances = upload(world.batch_instances(), storage_use, "batch instances");
   scene.materials = upload(pack.materials, storage_use, "materials");
   scene.uv_transforms = upload(std::span<const glm::vec3>(uv_rows(pack)), storage_use, "texture transforms");
   scene.batch_instance_count = static_cast<uint32_t>(pack.batch_instances.size());
@@ -82,8 +82,7 @@ GpuScene upload_scene(const gpu::Device& device, const pack::File& file, const U
   for (const pack::Material& material : pack.materials) scene.double_sided.push_back(material.double_sided != 0);
   upload_textures(device, upload.uploader, pack, options.anisotropy, scene);
   upload.uploader.finish();
-  scene.lights.assign(pack.lights.begin(), pack.lights.end());
-  scene.bounds = {pack.bake_info->bounds_min_ws, pack.bake_info->bounds_max_ws};
+  scene.instances_version = world.instances_version();
   return scene;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pack's geometry, materials and textures as the GPU reads them; its lights stay on the CPU, where they are selected.
+// A world's geometry, materials and textures as the GPU reads them; lights stay on the CPU, where they are selected.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -7,8 +7,7 @@
 
 #include "gpu/pipelines.h"
 #include "gpu/uploader.h"
-#include "pack_file.h"
-#include "scene/bounds.h"
+#include "world/world.h"
 
 namespace chandelier {
 
@@ -41,8 +40,7 @@ struct GpuScene {
   gpu::Owned<VkDescriptorPool> material_pool;
   std::vector<VkDescriptorSet> material_sets;
 
-  std::vector<pack::Light> lights;
-  Bounds bounds;
+  Version instances_version = 0;  // of the world, that instances and batch_instances hold
 };
 
 struct UploadOptions {
@@ -50,7 +48,7 @@ struct UploadOptions {
   gpu::UploadProgress progress;  // may be empty
 };
 /// Throws gpu::Error, also where the scene is too large for the device.
-GpuScene upload_scene(const gpu::Device& device, const pack::File& pack, const UploadOptions& options = {});
+GpuScene upload_scene(const gpu::Device& device, const World& world, const UploadOptions& options = {});
 
 /// The vertex streams of GpuScene: positions alone for depth, both for shading.
 std::vector<gpu::VertexStream> position_stream();

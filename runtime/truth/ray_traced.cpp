@@ -91,9 +91,10 @@ AlphaCorner alpha_corner(const pack::View& pack, const pack::Material& material,
 }
 
 // By material, those without a test together; seen from `origin_ws`.
-std::map<uint32_t, Casters> gather_casters(const pack::View& pack, const glm::vec3& origin_ws) {
+std::map<uint32_t, Casters> gather_casters(const World& world, const glm::vec3& origin_ws) {
+  const pack::View& pack = world.pack();
   std::map<uint32_t, Casters> by_test;
-  for (const pack::BatchInstance& placed : pack.batch_instances) {
+  for (const pack::BatchInstance& placed : world.batch_instances()) {
     if (!pack::throws_shadow(pack, placed)) continue;
     const pack::Batch& batch = pack.batches[placed.batch];
     const pack::Material& material = pack.materials[batch.material];
@@ -102,7 +103,7 @@ std::map<uint32_t, Casters> gather_casters(const pack::View& pack, const glm::ve
     for (uint32_t i = batch.first_index; i < batch.first_index + batch.index_count; ++i) {
       const uint32_t vertex = pack.indices[i].vertex;
       casters.corners.push_back(
-          position_from(origin_ws, pack.instances[placed.instance], pack.positions[vertex].position_ls));
+          position_from(origin_ws, world.instances()[placed.instance], pack.positions[vertex].position_ls));
       if (masked) casters.alpha_corners.push_back(alpha_corner(pack, material, vertex));
     }
     if (!masked || casters.texture) continue;
@@ -120,9 +121,12 @@ struct Release {
 
 class RayScene {
  public:
-  RayScene(const pack::View& pack, const glm::vec3& origin_ws);
+  RayScene(const World& world, const glm::vec3& origin_ws);
 
-  const glm::vec3& origin_ws() const { return origin_ws_; }
+  /// Whether it is still what an eye there sees.
+  bool serves(const World& world, const glm::vec3& eye_ws) const {
+    return instances_ == world.instances_version() && !is_far_from(eye_ws, origin_ws_);
+  }
   void answer(const VisibilityQuery& query) const;
 
  private:
@@ -130,14 +134,18 @@ class RayScene {
   void check(const std::string& what) const;
   void answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const;
 
+  Version instances_;                    // of the world, when this was built
   glm::vec3 origin_ws_;                  // what everything is reckoned from
   std::map<uint32_t, Casters> casters_;  // outlive the scene, which reads their corners
   std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
   std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
 };
 
-RayScene::RayScene(const pack::View& pack, const glm::vec3& origin_ws)
-    : origin_ws_(origin_ws), casters_(gather_casters(pack, origin_ws)), device_(rtcNewDevice(nullptr)) {
+RayScene::RayScene(const World& world, const glm::vec3& origin_ws)
+    : instances_(world.instances_version()),
+      origin_ws_(origin_ws),
+      casters_(gather_casters(world, origin_ws)),
+      device_(rtcNewDevice(nullptr)) {
   if (!device_)
     throw std::runtime_error("Embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
   scene_.reset(rtcNewScene(device_.get()));
@@ -309,11 +317,11 @@ void RayScene::answer(const VisibilityQuery& query) const {
 
 }  // namespace
 
-VisibilitySource ray_traced_visibility(const pack::View& pack) {
+VisibilitySource ray_traced_visibility(const World& world) {
   const auto scene = std::make_shared<std::unique_ptr<const RayScene>>();
-  return [pack, scene](const VisibilityQuery& query) {
-    if (*scene && is_far_from(query.eye_ws, (*scene)->origin_ws())) scene->reset();  // before another takes memory
-    if (!*scene) *scene = std::make_unique<const RayScene>(pack, origin_near(query.eye_ws));
+  return [&world, scene](const VisibilityQuery& query) {
+    if (*scene && !(*scene)->serves(world, query.eye_ws)) scene->reset();  // before another takes memory
+    if (!*scene) *scene = std::make_unique<const RayScene>(world, origin_near(query.eye_ws));
     (*scene)->answer(query);
   };
 }

@@ -54,7 +54,8 @@ class BiasTest : public GpuTest {
   // A lone receiver that nothing can shadow has not one darker pixel, with any filter, radius and resolution.
   void expect_no_speckle(Scene scene, const pack::Light& light, const Camera& camera, const std::string& name) {
     const pack::File pack = with_light(scene, light).open();
-    Renderer renderer(device(), pack);
+    const World world(pack);
+    Renderer renderer(device(), world);
     const RenderSettings bare = settings_for(camera, size_px, size_px, clustered(Filter::hard, 0.0f, 64));
     const Picture expected = frame(renderer, without_shadows(bare));
     uint32_t lit = 0;
@@ -144,7 +145,8 @@ TEST_F(BiasTest, ShadowBeginsAtTheContact) {
     Scene scene = lone(level_square(glm::vec3(0.0f), 8));
     scene.add(quad({1, 1, 0}, {1, 1, 0}, {0, 0, -2}), 0);
     const pack::File pack = with_light(scene, point_light(lamp, 30, 20)).open();
-    Renderer renderer(device(), pack);
+    const World world(pack);
+    Renderer renderer(device(), world);
     for (const uint32_t face_size_px : {128u, 512u}) {
       expect_shadow_from_the_contact(renderer, lamp, clustered(Filter::hard, 0.0f, face_size_px));
       expect_shadow_from_the_contact(renderer, lamp, clustered(Filter::pcf, 0.0f, face_size_px));
@@ -178,7 +180,8 @@ void expect_penumbra(gpu::Device& device, const std::vector<pack::Light>& lights
   scene.add(quad({-4, height_m, 0}, {4, 0, 0}, {0, 0, -8}), 0);
   scene.lights = lights;
   const pack::File pack = scene.open();
-  Renderer renderer(device, pack);
+  const World world(pack);
+  Renderer renderer(device, world);
   // From below the half plane, always as much of the floor.
   const float eye_m = 0.999f * height_m;
   Camera camera = look({0, eye_m, 0}, {0, 0, 0}, 2.0f * std::atan(0.5f * seen_m / eye_m));

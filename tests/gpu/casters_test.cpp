@@ -66,8 +66,8 @@ class CastersTest : public GpuTest {
   static RenderSettings settings_of(const Recipe& recipe) {
     return settings_for(look({1.5f, 3.0f, 4}, {0, 0.4f, 0}, 0.9f), width, height, recipe);
   }
-  Frame frame(const pack::File& pack, const Recipe& recipe, const VisibilitySource& rays = {}) {
-    Renderer renderer(device(), pack);
+  Frame frame(const World& world, const Recipe& recipe, const VisibilitySource& rays = {}) {
+    Renderer renderer(device(), world);
     RenderSettings settings = settings_of(recipe);
     settings.visibility = rays;
     const FrameStats stats = renderer.draw(settings);
@@ -76,8 +76,9 @@ class CastersTest : public GpuTest {
   // Where no light knows of anything.
   Picture lit_everywhere() {
     const Recipe recipe = recipe_with(Select::per_light, Cull::none, Filter::rays, Deliver::textures, Lookup::tiles);
-    return frame(things_over_a_floor(Without::nothing), recipe,
-                 [](const VisibilityQuery& query) { std::ranges::fill(query.visibility, uint8_t{255}); })
+    const pack::File pack = things_over_a_floor(Without::nothing);
+    const World world(pack);
+    return frame(world, recipe, [](const VisibilityQuery& query) { std::ranges::fill(query.visibility, uint8_t{255}); })
         .picture;
   }
   static uint64_t different_pixels(const Picture& a, const Picture& b) {
@@ -105,7 +106,9 @@ TEST_F(CastersTest, WhatThrowsNoShadowIsSeenAndDarkensNothingInAnyRecipe) {
           const Recipe recipe = recipe_with(select, cull, filter, deliver, Lookup::tiles);
           EXPECT_GT(different_pixels(frame(whole, recipe).picture, lit), 400u);
           for (const Without mark : {Without::instance, Without::material}) {
-            const Frame found = frame(things_over_a_floor(mark), recipe);
+            const pack::File pack = things_over_a_floor(mark);
+            const World world(pack);
+            const Frame found = frame(world, recipe);
             EXPECT_EQ(different_pixels(found.picture, lit), 0u);
             EXPECT_GT(found.stats.shadow_maps, 0u);
           }
@@ -118,8 +121,9 @@ TEST_F(CastersTest, OnlyCastersAreDrawnAndPredicted) {
     const Recipe recipe = recipe_with(Select::per_light, cull, Filter::hard, Deliver::inlined, Lookup::tiles);
     for (const Without mark : {Without::nothing, Without::instance, Without::material}) {
       const pack::File pack = things_over_a_floor(mark);
-      const Frame found = frame(pack, recipe);
-      Predictor predictor(pack.view());
+      const World world(pack);
+      const Frame found = frame(world, recipe);
+      Predictor predictor(world);
       const FrameStats predicted = predictor.predict(settings_of(recipe)).stats;
       EXPECT_EQ(found.stats.shadow_triangles, predicted.shadow_triangles);
       EXPECT_EQ(found.stats.shadow_draws, predicted.shadow_draws);
@@ -135,7 +139,8 @@ TEST_F(CastersTest, RaysKnowOfCastersAlone) {
   const Picture lit = lit_everywhere();
   for (const Without mark : {Without::nothing, Without::instance, Without::material}) {
     const pack::File pack = things_over_a_floor(mark);
-    const Picture found = frame(pack, recipe, truth::ray_traced_visibility(pack.view())).picture;
+    const World world(pack);
+    const Picture found = frame(world, recipe, truth::ray_traced_visibility(world)).picture;
     if (mark == Without::nothing)
       EXPECT_GT(different_pixels(found, lit), 400u);
     else

@@ -21,8 +21,9 @@ constexpr Answers all_filters[]{{"hard", Filter::hard}, {"pcf", Filter::pcf}, {"
 class CloseTest : public GpuTest {
  protected:
   Picture picture_of(const pack::File& pack, RenderSettings settings) {
-    if (settings.recipe.filter == Filter::rays) settings.visibility = truth::ray_traced_visibility(pack.view());
-    Renderer renderer(device(), pack);
+    const World world(pack);
+    if (settings.recipe.filter == Filter::rays) settings.visibility = truth::ray_traced_visibility(world);
+    Renderer renderer(device(), world);
     renderer.draw(settings);
     return renderer.read_back();
   }

@@ -67,7 +67,8 @@ class CornerTest : public GpuTest {
   void expect_no_dark_lines(const Scene& scene, const Camera& camera, const std::string& name,
                             const std::function<bool(const RenderSettings&, uint32_t, uint32_t)>& left_out) {
     const pack::File pack = scene.open();
-    Renderer renderer(device(), pack);
+    const World world(pack);
+    Renderer renderer(device(), world);
     const auto picture_of = [&](const RenderSettings& settings) {
       renderer.draw(settings);
       return renderer.read_back();
@@ -155,7 +156,8 @@ TEST_F(CornerTest, SunShadowsStayWhereTheSceneIsDeep) {
       if (deep) scene.add(level_square({0, -8000, 0}, 1), grey);
       scene.lights = {directional_light(glm::normalize(glm::vec3(0.5f, -1, 0.3f)), 3)};
       const pack::File pack = scene.open();
-      Renderer renderer(device(), pack);
+      const World world(pack);
+      Renderer renderer(device(), world);
       const RenderSettings settings = view(look({0, 3, 3}, {0, 0, 0}, 1), filter, 1024);
       renderer.draw(settings);
       const Picture found = renderer.read_back();
@@ -202,7 +204,8 @@ TEST_F(CornerTest, ThinWallsLetNoLightIn) {
     Scene scene = room();
     scene.lights = {light};
     const pack::File pack = scene.open();
-    Renderer renderer(device(), pack);
+    const World world(pack);
+    Renderer renderer(device(), world);
     for (size_t i = 0; i < std::size(filters); ++i) {
       EXPECT_EQ(lit_inside(renderer, view(ahead, filters[i], 512)), 0u) << "filter " << i;
       dashes[i] += lit_inside(renderer, view(ahead, filters[i], 128));

@@ -79,8 +79,9 @@ uint32_t lit(const Picture& picture) {
 class FarTest : public GpuTest {
  protected:
   Picture picture_of(const pack::File& pack, RenderSettings settings) {
-    if (settings.recipe.filter == Filter::rays) settings.visibility = truth::ray_traced_visibility(pack.view());
-    Renderer renderer(device(), pack);
+    const World world(pack);
+    if (settings.recipe.filter == Filter::rays) settings.visibility = truth::ray_traced_visibility(world);
+    Renderer renderer(device(), world);
     renderer.draw(settings);
     return renderer.read_back();
   }

@@ -70,7 +70,8 @@ RenderSettings without_shadows(RenderSettings settings) {
 
 Picture draw(gpu::Device& device, const Scene& scene, const RenderSettings& settings) {
   const pack::File pack = scene.open();
-  Renderer renderer(device, pack);
+  const World world(pack);
+  Renderer renderer(device, world);
   renderer.draw(settings);
   return renderer.read_back();
 }

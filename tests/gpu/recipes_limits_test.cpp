@@ -10,7 +10,8 @@ namespace {
 
 TEST_F(RecipesTest, SizesMayChangeFromFrameToFrame) {
   const pack::File pack = small_room(6).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
   const Frame first = frame(renderer, settings);
   settings.width = 61;
@@ -34,7 +35,8 @@ TEST_F(RecipesTest, MoreLightsThanACubeArrayHolds) {
   recipe.face_size_px = 16;
   const auto settings = settings_for(look({0, 8, 0.1f}, {0, 0, 0}, 1.0f), 64, 64, recipe);
   const pack::File pack = scene.open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   const Frame all = frame(renderer, settings);
   EXPECT_EQ(all.stats.shadow_maps, count);
   EXPECT_EQ(all.stats.shadow_bytes, count * cube_bytes(16));
@@ -53,7 +55,8 @@ TEST_F(RecipesTest, MoreLightsThanACubeArrayHolds) {
 
 TEST_F(RecipesTest, StagesAreTimedHoweverManyRoundsThereAre) {
   const pack::File pack = small_room(800).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
   settings.width = settings.height = 16;
   settings.recipe.face_size_px = 16;
@@ -67,7 +70,8 @@ TEST_F(RecipesTest, StagesAreTimedHoweverManyRoundsThereAre) {
 
 TEST_F(RecipesTest, WhatIsExposedTooLongIsWhite) {
   const pack::File pack = small_room(5).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
   settings.exposure_ev = 75.0f;
   const Picture picture = frame(renderer, settings).picture;
@@ -84,7 +88,8 @@ TEST_F(RecipesTest, NoLightsLeaveBlackAndAmbient) {
   Scene scene = small_room(0);
   scene.lights.clear();
   const pack::File pack = scene.open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   for (const Preset& preset : presets()) {
     RenderSettings settings = room_settings(preset.recipe);
     settings.exposure_ev.reset();
@@ -102,7 +107,8 @@ TEST_F(RecipesTest, NoTriangles) {
   scene.lights = {point_light({0, 1, 0}, 10, 5), directional_light({0, -1, 0}, 1),
                   spot_light({0, 1, 0}, {0, -1, 0}, 10, 5, 0.1f, 0.2f)};
   const pack::File pack = scene.open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   for (const Preset& preset : presets()) {
     for (const Cull cull : {Cull::none, Cull::light_frustum}) {
       RenderSettings settings = room_settings(preset.recipe);
@@ -128,7 +134,8 @@ TEST_F(RecipesTest, OnlyMaskedSurfaces) {
   Recipe recipe = recipe_with(Select::per_light, Filter::hard, 0);
   recipe.shade = Shade::lambert;
   const pack::File pack = scene.open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   const RenderSettings settings = settings_for(look({0, 0.9f, 0}, {0, 0, 0}, 0.5f * pi), 64, 64, recipe);
   const Picture picture = frame(renderer, settings).picture;
   EXPECT_EQ(radiance_at(picture, 60, 32), glm::vec3(0.0f));  // a hole: nothing there
@@ -138,7 +145,8 @@ TEST_F(RecipesTest, OnlyMaskedSurfaces) {
 
 TEST_F(RecipesTest, WhatCannotBeRenderedIsRefused) {
   const pack::File pack = small_room(1).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   RenderSettings settings = room_settings(recipe_with(Select::light_clusters, Filter::hard, 0.5f));
   EXPECT_THROW(renderer.draw(settings), std::invalid_argument);
   settings.recipe.d_init_m = 0.0f;

@@ -11,7 +11,8 @@ namespace {
 
 TEST_F(RecipesTest, LightClustersOfOneLightEachGiveTheReferencesPicture) {
   const pack::File pack = small_room(20).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, filter, 0)));
     RenderSettings settings = room_settings(recipe_with(Select::light_clusters, filter, 0));
@@ -26,7 +27,8 @@ TEST_F(RecipesTest, LightClustersOfOneLightEachGiveTheReferencesPicture) {
 // LightCluster §5.4: clusters that are nearly as many as lights are not worth a soft filter.
 TEST_F(RecipesTest, TheReferenceIsDrawnWhereClustersAreNearlyAsManyAsLights) {
   const pack::File pack = small_room(20).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, Filter::hard, 0)));
   RenderSettings settings = room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.1f));
   settings.recipe.deliver = Deliver::textures;
@@ -42,7 +44,8 @@ TEST_F(RecipesTest, TheReferenceIsDrawnWhereClustersAreNearlyAsManyAsLights) {
 
 TEST_F(RecipesTest, LightClustersShareMaps) {
   const pack::File pack = small_room(20).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, Filter::pcf, 0)));
   const Frame clustered = frame(renderer, room_settings(recipe_with(Select::light_clusters, Filter::pcf, 1.5f)));
   EXPECT_EQ(clustered.stats.lights_in_view, reference.stats.lights_in_view);
@@ -58,7 +61,8 @@ TEST_F(RecipesTest, DirectionalLightsShareCascades) {
   scene.lights.push_back(directional_light({-1, -1, 0.2f}, 0.5f));
   scene.lights[0].color = {1, 0.2f, 0.2f};
   const pack::File pack = scene.open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   const Frame reference = frame(renderer, room_settings(recipe_with(Select::per_light, Filter::pcf, 0)));
   const Frame clustered = frame(renderer, room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.5f)));
   EXPECT_EQ(reference.stats.centers, (std::vector<uint32_t>{0, 1, 2}));
@@ -74,7 +78,8 @@ TEST_F(RecipesTest, DirectionalLightsShareCascades) {
 
 TEST_F(RecipesTest, MapsThatTakeTurnsInTheStoreGiveTheSamePicture) {
   const pack::File pack = small_room(9).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   for (const Select select : {Select::per_light, Select::light_clusters}) {
     for (const uint64_t cubes : {1u, 4u}) {
       RenderSettings settings = room_settings(recipe_with(select, Filter::pcf, 0.8f));
@@ -99,7 +104,8 @@ TEST_F(RecipesTest, MapsThatTakeTurnsInTheStoreGiveTheSamePicture) {
 TEST_F(RecipesTest, TilesGiveThePictureOfAllLights) {
   for (const uint32_t lights : {5u, 70u, 600u}) {
     const pack::File pack = small_room(lights).open();
-    Renderer renderer(device(), pack);
+    const World world(pack);
+    Renderer renderer(device(), world);
     for (const Deliver deliver : {Deliver::inlined, Deliver::textures}) {
       RenderSettings settings = room_settings(recipe_with(Select::light_clusters, Filter::pcf, 0.4f));
       settings.width = 117;
@@ -118,7 +124,8 @@ TEST_F(RecipesTest, TilesGiveThePictureOfAllLights) {
 // A byte holds hard visibility exactly, and filtered visibility to half a 255th of each light's share.
 TEST_F(RecipesTest, VisibilityTexturesGiveThePictureOfInlineVisibility) {
   const pack::File pack = small_room(20).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   for (const Filter filter : {Filter::hard, Filter::pcf, Filter::pcss}) {
     RenderSettings settings = room_settings(recipe_with(Select::per_light, filter, 0));
     const Frame inlined = frame(renderer, settings);
@@ -138,7 +145,8 @@ TEST_F(RecipesTest, VisibilityTexturesMayAllBeEmpty) {
   Scene scene = small_room(0);
   scene.lights = {point_light({0.5f, 1, 1}, 50, 1.08f)};
   const pack::File pack = scene.open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::pcf, 0));
   settings.camera = look({0, 1, 0}, {0, 1, -1}, 0.5f * pi);
   settings.width = settings.height = 64;
@@ -155,7 +163,8 @@ TEST_F(RecipesTest, RaysAreAskedAboutEveryVisiblePoint) {
   scene.add(level_square({0, 0, 0}, 50.0f), scene.add_material(plain_material(glm::vec3(0.5f))));
   scene.lights = {point_light({0, 2, 0}, 10, 5), directional_light({0, -1, 0}, 1)};
   const pack::File pack = scene.open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   RenderSettings settings = room_settings(presets().back().recipe);
   ASSERT_EQ(settings.recipe.filter, Filter::rays);
   const Frame lit = frame(renderer, settings);
@@ -186,7 +195,8 @@ TEST_F(RecipesTest, RaysAreAskedAboutEveryVisiblePoint) {
 
 TEST_F(RecipesTest, CullingChangesWorkButNotThePicture) {
   const pack::File pack = small_room(12).open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   RenderSettings settings = room_settings(recipe_with(Select::per_light, Filter::hard, 0));
   const Frame culled = frame(renderer, settings);
   settings.recipe.cull = Cull::none;
@@ -198,7 +208,8 @@ TEST_F(RecipesTest, CullingChangesWorkButNotThePicture) {
 
 TEST_F(RecipesTest, TheSameFrameTwiceIsTheSameBits) {
   const pack::File pack = small_room(20).open();
-  Renderer renderer(device(), pack), another(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world), another(device(), world);
   for (const Preset& preset : presets()) {
     SCOPED_TRACE(preset.name);
     RenderSettings settings = room_settings(preset.recipe);

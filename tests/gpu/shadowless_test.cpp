@@ -57,7 +57,8 @@ struct Frame {
 class ShadowlessTest : public GpuTest {
  protected:
   Frame frame(const pack::File& pack, const Recipe& recipe) {
-    Renderer renderer(device(), pack);
+    const World world(pack);
+    Renderer renderer(device(), world);
     RenderSettings settings = settings_for(look({2.5f, 3.5f, 4}, {0, 0.3f, 0}, 0.9f), width, height, recipe);
     settings.visibility = [](const VisibilityQuery& query) { std::ranges::fill(query.visibility, uint8_t{255}); };
     const FrameStats stats = renderer.draw(settings);

@@ -71,14 +71,15 @@ struct Differences {
 class TruthPictureTest : public GpuTest {
  protected:
   Picture picture_of(const pack::File& pack, const Camera& camera, std::string_view preset) {
+    world_.emplace(pack);
     RenderSettings settings = settings_for(camera, width, height, recipe_of(preset));
     if (settings.recipe.filter == Filter::rays)
-      settings.visibility = [this, rays = truth::ray_traced_visibility(pack.view())](const VisibilityQuery& query) {
+      settings.visibility = [this, rays = truth::ray_traced_visibility(*world_)](const VisibilityQuery& query) {
         rays(query);
         asked_ = {query.light, query.near_m, {query.points.begin(), query.points.end()}, rays};
         for (SurfacePoint& point : asked_.points) point.position += query.eye_ws;
       };
-    Renderer renderer(device(), pack);
+    Renderer renderer(device(), *world_);
     renderer.draw(settings);
     return renderer.read_back();
   }
@@ -108,6 +109,7 @@ class TruthPictureTest : public GpuTest {
     return found;
   }
 
+  std::optional<World> world_;  // of the last picture
   // What rays were last asked about.
   struct Asked {
     frame::FrameLight light;

@@ -43,7 +43,8 @@ TEST(Budget, IsKeptByAsManyMapsAsItAllows) {
   for (const DistanceScaling scaling : {DistanceScaling::grow, DistanceScaling::none}) {
     const pack::Contents pack = lights_in_a_box(100, 1);
     const pack::View view = pack::view_of(pack);
-    Predictor predictor(view);
+    const World world(view);
+    Predictor predictor(world);
     const RenderSettings settings = clustered(scaling);
     uint64_t before = 0;
     for (const uint64_t most : {1, 2, 5, 10, 20, 40, 60, 80, 99}) {
@@ -68,17 +69,19 @@ TEST(Budget, IsKeptByAsManyMapsAsItAllows) {
 TEST(Budget, LeavesLightsAloneThatItHolds) {
   const pack::Contents pack = lights_in_a_box(30, 2);
   const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(view);
+  Predictor predictor(world);
   const BudgetedPlan plan = choose_d_init(predictor, clustered(DistanceScaling::grow), {.max_shadow_maps = 30});
   EXPECT_EQ(plan.recipe.d_init_m, 0.0f);
   EXPECT_TRUE(plan.keeps_budget);
-  EXPECT_EQ(plan.prediction.plan.list.center, plan.prediction.plan.list.pack_light);
+  EXPECT_EQ(plan.prediction.plan.list.center, plan.prediction.plan.list.light_id);
 }
 
 TEST(Budget, OfBytesIsThatOfMaps) {
   const pack::Contents pack = lights_in_a_box(50, 3);
   const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(view);
+  Predictor predictor(world);
   RenderSettings settings = clustered(DistanceScaling::grow);
   settings.recipe.face_size_px = 256;  // 1.5 MiB a map
   const BudgetedPlan bytes = choose_d_init(predictor, settings, {.max_shadow_bytes = uint64_t{16} << 20});
@@ -122,7 +125,8 @@ TEST(Budget, CountsTheMapsOfAPlan) {
   for (uint32_t seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(seed);
     const pack::Contents pack = mixed_lights(seed);
-    Predictor predictor(pack::view_of(pack));
+    const World world(pack::view_of(pack));
+    Predictor predictor(world);
     RenderSettings settings = mixed_settings(seed);
     ShadowMapCounter counter = predictor.counter(settings);
     for (const float d_init_m : {0.0f, 0.1f, 0.7f, 2.0f, 9.0f, 70.0f}) {
@@ -146,7 +150,8 @@ TEST(Budget, IsKeptByTheFirstDInitOfAllThatKeepsIt) {
   for (uint32_t seed = 0; seed < 150; ++seed) {
     SCOPED_TRACE(seed);
     const pack::Contents pack = mixed_lights(seed);
-    Predictor predictor(pack::view_of(pack));
+    const World world(pack::view_of(pack));
+    Predictor predictor(world);
     RenderSettings settings = mixed_settings(seed);
     const Budget budget{.max_shadow_maps = 1 + seed % 23};
     const BudgetedPlan plan = choose_d_init(predictor, settings, budget);
@@ -161,7 +166,8 @@ TEST(Budget, LeavesTheLeastDInitThatKeepsIt) {
   for (uint32_t seed = 0; seed < 100; ++seed) {
     SCOPED_TRACE(seed);
     const pack::Contents pack = mixed_lights(seed);
-    Predictor predictor(pack::view_of(pack));
+    const World world(pack::view_of(pack));
+    Predictor predictor(world);
     RenderSettings settings = mixed_settings(seed);
     settings.recipe.d_init_m = 0.2f * static_cast<float>(1 + seed % 17);
     const uint64_t wanted = predictor.plan(settings).stats.shadow_maps;
@@ -186,7 +192,8 @@ TEST(Budget, SaysWhereNoClusterKeepsIt) {
   for (pack::Light& light : pack.lights) light.range_m = 50;
   pack.lights[0].position_ws = {0, 0, -60};
   const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(view);
+  Predictor predictor(world);
   RenderSettings settings = clustered(DistanceScaling::paper_formula);  // beyond z_far nothing is clustered
   settings.camera.eye_ws = {0, 0, 60};
   const BudgetedPlan plan = choose_d_init(predictor, settings, {.max_shadow_maps = 1});
@@ -230,7 +237,8 @@ RenderSettings small_picture() {
 TEST(Budget, OfErrorIsKeptByAsFewMapsAsDo) {
   const pack::Contents pack = posts_on_a_floor();
   const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(view);
+  Predictor predictor(world);
   RenderSettings settings = small_picture();
   settings.recipe.d_init_m = 50;
   const Prediction coarse = predictor.plan(settings);
@@ -253,7 +261,8 @@ TEST(Budget, OfErrorIsKeptByAsFewMapsAsDo) {
 TEST(Budget, OfMapsComesBeforeThatOfError) {
   const pack::Contents pack = posts_on_a_floor();
   const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(view);
+  Predictor predictor(world);
   RenderSettings settings = small_picture();
   const BudgetedPlan plan = choose_d_init(predictor, settings, {.max_shadow_maps = 4, .max_error = 1e-4f});
   EXPECT_TRUE(plan.keeps_budget);
@@ -268,7 +277,8 @@ TEST(Budget, OfMapsComesBeforeThatOfError) {
 TEST(Budget, IsWhatSelectionByErrorKeeps) {
   const pack::Contents pack = posts_on_a_floor();
   const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(view);
+  Predictor predictor(world);
   RenderSettings settings = small_picture();
   settings.recipe.select = Select::error_driven;
   settings.recipe.filter = Filter::hard;
@@ -297,13 +307,17 @@ TEST(Budget, IsWhatSelectionByErrorKeeps) {
 
 // The reference would give each light of a group a map of its own.
 TEST(Prediction, TheReferencesPathIsNotTakenWhereAGroupSharesAMap) {
-  pack::Contents pack = lights_in_a_box(20, 6);
-  const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const pack::Contents pack = lights_in_a_box(20, 6);
+  World world(pack::view_of(pack));
+  Predictor predictor(world);
   RenderSettings settings = clustered(DistanceScaling::grow);
   settings.recipe.d_init_m = 0.0f;
   EXPECT_EQ(predictor.plan(settings).stats.reference_path, 1u);
-  pack.lights[3].group = pack.lights[17].group = 1;
+  for (const LightId id : {3u, 17u}) {
+    pack::Light light = world.lights()[id];
+    light.group = 1;
+    world.set_light(id, light);
+  }
   const FrameStats stats = predictor.plan(settings).stats;
   EXPECT_EQ(stats.reference_path, 0u);
   EXPECT_EQ(stats.shadow_maps, 19u);
@@ -312,22 +326,25 @@ TEST(Prediction, TheReferencesPathIsNotTakenWhereAGroupSharesAMap) {
 
 // It is hard; a light with a radius, in view or not, keeps the filter that was asked for.
 TEST(Prediction, TheReferencesPathKeepsLightsWithARadiusSoft) {
-  pack::Contents pack = lights_in_a_box(20, 6);
-  const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const pack::Contents pack = lights_in_a_box(20, 6);
+  World world(pack::view_of(pack));
+  Predictor predictor(world);
   RenderSettings settings = clustered(DistanceScaling::grow);
   settings.recipe.d_init_m = 0.0f;
   settings.recipe.filter = Filter::pcss;
   EXPECT_EQ(predictor.plan(settings).plan.recipe.filter, Filter::hard);
-  pack.lights[3].radius_m = 0.05f;
+  pack::Light light = world.lights()[3];
+  light.radius_m = 0.05f;
   for (const float away_m : {0.0f, 1e4f}) {
-    pack.lights[3].position_ws.z += away_m;
+    light.position_ws.z += away_m;
+    world.set_light(3, light);
     const Prediction soft = predictor.plan(settings);
     EXPECT_EQ(soft.stats.reference_path, 1u);
     EXPECT_EQ(soft.plan.recipe.filter, Filter::pcss);
     EXPECT_EQ(soft.plan.recipe.select, Select::per_light);
   }
-  pack.lights[3].shadowless = 1;
+  light.shadowless = 1;
+  world.set_light(3, light);
   EXPECT_EQ(predictor.plan(settings).plan.recipe.filter, Filter::hard);
 }
 
@@ -335,7 +352,8 @@ TEST(Prediction, TheReferencesPathKeepsLightsWithARadiusSoft) {
 TEST(Prediction, ARadiusThatItsAuthorGaveIsNoError) {
   pack::Contents pack = posts_on_a_floor();
   const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(view);
+  Predictor predictor(world);
   RenderSettings settings = small_picture();
   settings.recipe.filter = Filter::pcss;
   settings.recipe.select = Select::per_light;
@@ -353,7 +371,8 @@ TEST(Prediction, ARadiusThatItsAuthorGaveIsNoError) {
 TEST(Prediction, CountsLightsMapsAndViews) {
   const pack::Contents pack = lights_in_a_box(40, 5);
   const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(view);
+  Predictor predictor(world);
   RenderSettings settings = clustered(DistanceScaling::grow);
   settings.recipe.d_init_m = 0.8f;
   settings.recipe.face_size_px = 128;

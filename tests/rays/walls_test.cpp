@@ -37,12 +37,13 @@ class Place {
   bool between(WallTest test, uint32_t a, uint32_t b) {
     if (!pack_) bake();
     const pack::View view = pack::view_of(*pack_);
+    const World world(view);
     const rays::PackRays rays(view);
-    Walls walls(view, rays);
+    Walls walls(world, rays);
     const bool found = walls.between(test, a, b);
     EXPECT_EQ(walls.between(test, a, b), found);
     EXPECT_EQ(walls.between(test, b, a), found);
-    EXPECT_EQ(Walls(view, rays).between(test, b, a), found);
+    EXPECT_EQ(Walls(world, rays).between(test, b, a), found);
     return found;
   }
   const pack::Contents& bake() {

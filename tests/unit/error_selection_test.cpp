@@ -127,9 +127,9 @@ TEST(ErrorLadderTest, DoesBetterThanDistances) {
     recipe.select = Select::light_clusters;
     recipe.filter = Filter::pcf;
     recipe.d_init_m = d_init;
-    const LightList list = select_lights(s.pack.view().lights, recipe, from_above(), 16.0f / 9.0f);
+    const LightList list = select_lights(s.world, recipe, from_above(), 16.0f / 9.0f);
     std::vector<MapMember> clusters;
-    for (size_t i = 0; i < list.pack_light.size(); ++i) clusters.push_back({list.pack_light[i], list.center[i], 0.0f});
+    for (size_t i = 0; i < list.light_id.size(); ++i) clusters.push_back({list.light_id[i], list.center[i], 0.0f});
     const auto maps = static_cast<uint32_t>(list.maps.size());
     EXPECT_LT(judge.rmse(ladder.with_at_most(maps)), 0.8 * judge.rmse(clusters)) << maps << " maps";
   }
@@ -168,12 +168,11 @@ TEST(ErrorDrivenTest, AGroupSharesOneMapAmongItself) {
   for (const uint32_t maps : {2, 3, 4})
     for (const MapMember& m : ladder.with_at_most(maps)) EXPECT_EQ(m.light == 0 || m.light == 3, m.center == 3);
 
-  Surroundings surroundings(s.pack.view());
+  Surroundings surroundings(s.world);
   Recipe recipe;
   recipe.select = Select::error_driven;
-  const LightList list =
-      select_lights(s.pack.view().lights, recipe, from_above(), 16.0f / 9.0f, {.surroundings = &surroundings});
-  const std::vector<uint32_t> centers = centers_of_pack_lights(list, 4);
+  const LightList list = select_lights(s.world, recipe, from_above(), 16.0f / 9.0f, {.surroundings = &surroundings});
+  const std::vector<uint32_t> centers = centers_by_light(s.world, list);
   EXPECT_EQ(centers[0], 0u);
   EXPECT_EQ(centers[3], 0u);
   EXPECT_EQ(std::count(centers.begin(), centers.end(), 0u), 2);
@@ -192,46 +191,45 @@ TEST(ErrorLadderTest, DirectionalLightsShareAmongThemselves) {
 TEST(ErrorDrivenTest, ALightInSeveralMapsIsAsBrightAsInOneAndCountsOnce) {
   const Sampled s(pillars(2));
   const auto& lights = s.pack.view().lights;
-  Surroundings surroundings(s.pack.view());
+  Surroundings surroundings(s.world);
   Recipe recipe;
   recipe.select = Select::error_driven;
   recipe.max_maps = 5;
-  SelectAids aids{.surroundings = &surroundings};
-  const LightList list = select_lights(lights, recipe, from_above(), 16.0f / 9.0f, aids);
+  SelectionInputs inputs{.surroundings = &surroundings};
+  const LightList list = select_lights(s.world, recipe, from_above(), 16.0f / 9.0f, inputs);
   EXPECT_EQ(list.lights_in_view, 24u);
   ASSERT_GT(list.lights.size(), 24u);
   std::vector<glm::vec3> radiant(24, glm::vec3(0.0f));
-  for (size_t i = 0; i < list.lights.size(); ++i) radiant[list.pack_light[i]] += list.lights[i].radiant;
+  for (size_t i = 0; i < list.lights.size(); ++i) radiant[list.light_id[i]] += list.lights[i].radiant;
   for (uint32_t light = 0; light < 24; ++light)
     EXPECT_LT(glm::distance(radiant[light], lights[light].color * lights[light].intensity), 1e-3f);
-  const double shared_rmse = expected_rmse(list, recipe, from_above(), 16.0f / 9.0f, aids);
+  const double shared_rmse = expected_rmse(list, recipe, from_above(), 16.0f / 9.0f, inputs);
 
   // Held where it is, it stays in several; elsewhere it goes whole.
-  std::vector<uint32_t> centers = centers_of_pack_lights(list, 24);
-  aids.centers = centers;
-  const LightList same = select_lights(lights, recipe, from_above(), 16.0f / 9.0f, aids);
-  EXPECT_EQ(same.pack_light, list.pack_light);
+  std::vector<uint32_t> centers = centers_by_light(s.world, list);
+  inputs.centers = centers;
+  const LightList same = select_lights(s.world, recipe, from_above(), 16.0f / 9.0f, inputs);
+  EXPECT_EQ(same.light_id, list.light_id);
   EXPECT_EQ(same.center, list.center);
   EXPECT_EQ(same.share, list.share);
   const auto divided = std::find_if(list.share.begin(), list.share.end(), [](float share) { return share < 1.0f; });
-  const uint32_t light = list.pack_light[divided - list.share.begin()];
+  const uint32_t light = list.light_id[divided - list.share.begin()];
   const uint32_t elsewhere = list.center[0] == centers[light] ? list.center.back() : list.center[0];
   centers[light] = elsewhere;
-  const LightList moved = select_lights(lights, recipe, from_above(), 16.0f / 9.0f, aids);
-  EXPECT_EQ(std::count(moved.pack_light.begin(), moved.pack_light.end(), light), 1);
-  EXPECT_EQ(centers_of_pack_lights(moved, 24)[light], elsewhere);
+  const LightList moved = select_lights(s.world, recipe, from_above(), 16.0f / 9.0f, inputs);
+  EXPECT_EQ(std::count(moved.light_id.begin(), moved.light_id.end(), light), 1);
+  EXPECT_EQ(centers_by_light(s.world, moved)[light], elsewhere);
   EXPECT_EQ(moved.lights_in_view, 24u);
-  EXPECT_GT(expected_rmse(moved, recipe, from_above(), 16.0f / 9.0f, aids), shared_rmse);
+  EXPECT_GT(expected_rmse(moved, recipe, from_above(), 16.0f / 9.0f, inputs), shared_rmse);
 }
 
 TEST(ErrorDrivenTest, AMapForEachSideOfAWallReachesWhereItsLightsDo) {
   const Sampled s(divided_floor());
-  Surroundings surroundings(s.pack.view());
+  Surroundings surroundings(s.world);
   Recipe recipe;
   recipe.select = Select::error_driven;
   recipe.d_init_m = 1.2f;  // light clusters are the same two, but softer
-  const LightList list =
-      select_lights(s.pack.view().lights, recipe, from_above(), 16.0f / 9.0f, {.surroundings = &surroundings});
+  const LightList list = select_lights(s.world, recipe, from_above(), 16.0f / 9.0f, {.surroundings = &surroundings});
   EXPECT_EQ(list.lights.size(), 4u);
   EXPECT_EQ(list.maps.size(), 2u);
   for (const frame::ShadowMap& map : list.maps) {
@@ -239,7 +237,7 @@ TEST(ErrorDrivenTest, AMapForEachSideOfAWallReachesWhereItsLightsDo) {
     EXPECT_EQ(map.light_count, 2u);
     EXPECT_NEAR(map.range_m, 21.0f, 1e-4f);  // C_att: the other light stands 1 m away
   }
-  EXPECT_THROW(select_lights(s.pack.view().lights, recipe, from_above(), 1.0f), std::invalid_argument);
+  EXPECT_THROW(select_lights(s.world, recipe, from_above(), 1.0f), std::invalid_argument);
 }
 
 // A lamp far beyond the floor's right edge lights nothing in view, but sees that side of the wall.
@@ -247,15 +245,15 @@ TEST(ErrorDrivenTest, ExpectsTheErrorOfAHeldMapWhoseLightIsOutOfView) {
   test::Scene scene = divided_floor();
   scene.lights.push_back(test::point_light({50, 1.5f, 0}, 10, 1));
   const Sampled s(scene);
-  Surroundings surroundings(s.pack.view());
+  Surroundings surroundings(s.world);
   const auto rmse_with_far_map = [&](uint32_t light) {
     std::vector<uint32_t> centers(5, pack::none);
     centers[light] = 4;
-    const SelectAids aids{.surroundings = &surroundings, .centers = centers};
-    const LightList list = select_lights(s.pack.view().lights, {}, from_above(), 16.0f / 9.0f, aids);
+    const SelectionInputs inputs{.surroundings = &surroundings, .centers = centers};
+    const LightList list = select_lights(s.world, {}, from_above(), 16.0f / 9.0f, inputs);
     EXPECT_EQ(list.lights_in_view, 4u);
     EXPECT_EQ(list.center.back(), 4u);
-    return expected_rmse(list, {}, from_above(), 16.0f / 9.0f, aids);
+    return expected_rmse(list, {}, from_above(), 16.0f / 9.0f, inputs);
   };
   EXPECT_GT(rmse_with_far_map(0), 0.08);
   EXPECT_LT(rmse_with_far_map(2), 0.03);
@@ -266,11 +264,10 @@ TEST(ErrorDrivenTest, TakesMoreMapsThanItsErrorAsksForUpToSixTenthsOfTheClusters
   uint32_t surer = 0;
   for (uint32_t seed = 0; seed < 3; ++seed) {
     const Sampled s(pillars(seed));
-    const auto& lights = s.pack.view().lights;
-    Surroundings surroundings(s.pack.view());
-    const SelectAids aids{.surroundings = &surroundings};
+    Surroundings surroundings(s.world);
+    const SelectionInputs inputs{.surroundings = &surroundings};
     const auto select = [&](const Recipe& recipe) {
-      return select_lights(lights, recipe, from_above(), 16.0f / 9.0f, aids);
+      return select_lights(s.world, recipe, from_above(), 16.0f / 9.0f, inputs);
     };
     for (const float d_init_m : {0.6f, 1.0f, 1.5f}) {
       Recipe clusters;
@@ -278,7 +275,7 @@ TEST(ErrorDrivenTest, TakesMoreMapsThanItsErrorAsksForUpToSixTenthsOfTheClusters
       clusters.filter = Filter::pcss;
       clusters.d_init_m = d_init_m;
       const LightList of_clusters = select(clusters);
-      const double target = expected_rmse(of_clusters, clusters, from_above(), 16.0f / 9.0f, aids);
+      const double target = expected_rmse(of_clusters, clusters, from_above(), 16.0f / 9.0f, inputs);
       ASSERT_GT(target, 0.001);
       Recipe by_error;
       by_error.select = Select::error_driven;
@@ -303,7 +300,8 @@ TEST(ErrorDrivenTest, NothingThatCastsNeedsNoMaps) {
   for (int i = 0; i < 12; ++i)
     scene.lights.push_back(test::point_light({0.3f * static_cast<float>(i) - 2.0f, 1.5f, 0.0f}, 2, 20));
   const pack::File pack = scene.open();
-  Surroundings surroundings(pack.view());
+  const World world(pack);
+  Surroundings surroundings(world);
   Recipe recipe;
   recipe.select = Select::error_driven;
   recipe.d_init_m = 0.5f;
@@ -313,10 +311,9 @@ TEST(ErrorDrivenTest, NothingThatCastsNeedsNoMaps) {
       recipe.face_size_px = face_size_px;
       Recipe clusters = recipe;
       clusters.select = Select::light_clusters;
-      const auto& lights = pack.view().lights;
-      const SelectAids aids{.surroundings = &surroundings};
-      const size_t by_error = select_lights(lights, recipe, from_above(), 1.0f, aids).maps.size();
-      EXPECT_LE(by_error, select_lights(lights, clusters, from_above(), 1.0f, aids).maps.size());
+      const SelectionInputs inputs{.surroundings = &surroundings};
+      const size_t by_error = select_lights(world, recipe, from_above(), 1.0f, inputs).maps.size();
+      EXPECT_LE(by_error, select_lights(world, clusters, from_above(), 1.0f, inputs).maps.size());
       if (filter == Filter::hard) {
         EXPECT_EQ(by_error, 1u);
       }

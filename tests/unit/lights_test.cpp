@@ -8,9 +8,12 @@
 #include <random>
 
 #include "lights/light_list.h"
+#include "world_of.h"
 
 namespace chandelier {
 namespace {
+
+using test::world_of;
 
 using Random = std::mt19937;
 float uniform(Random& random, float from, float to) {
@@ -117,14 +120,14 @@ TEST(LightListTest, PerLightKeepsWhatIsInViewInThePacksOrder) {
   const pack::Light lights[]{light_at({0, 0, -5}, 1), light_at({0, 0, 5}, 1), light_at({0, 0, 5}, 7),
                              light_at({0, 0, 0}, 0, pack::LightType::directional),
                              light_at({1, 0, -3}, 2, pack::LightType::spot)};
-  const LightList list = select_lights(lights, {}, {}, 1.0f);
-  EXPECT_EQ(list.pack_light, (std::vector<uint32_t>{0, 2, 3, 4}));
+  const LightList list = select_lights(world_of(lights), {}, {}, 1.0f);
+  EXPECT_EQ(list.light_id, (std::vector<uint32_t>{0, 2, 3, 4}));
   ASSERT_EQ(list.maps.size(), 4u);
   for (uint32_t i = 0; i < 4; ++i) {
     EXPECT_EQ(list.maps[i].first_light, i);
     EXPECT_EQ(list.maps[i].light_count, 1u);
-    EXPECT_EQ(list.maps[i].center_ws, lights[list.pack_light[i]].position_ws);
-    EXPECT_EQ(list.maps[i].range_m, lights[list.pack_light[i]].range_m);
+    EXPECT_EQ(list.maps[i].center_ws, lights[list.light_id[i]].position_ws);
+    EXPECT_EQ(list.maps[i].range_m, lights[list.light_id[i]].range_m);
     EXPECT_EQ(list.maps[i].filter_radius_m, 0.0f);
     EXPECT_EQ(list.maps[i].is_directional, i == 2 ? 1u : 0u);
     EXPECT_EQ(list.lights[i].radiant, glm::vec3(2.0f, 1.0f, 0.5f));
@@ -146,7 +149,7 @@ TEST(LightListTest, LightClustersKeepTheirLightsTogether) {
   recipe.select = Select::light_clusters;
   recipe.filter = Filter::pcf;
   recipe.d_init_m = 2.0f;
-  const LightList list = select_lights(lights, recipe, {}, 1.0f);
+  const LightList list = select_lights(world_of(lights), recipe, {}, 1.0f);
   ASSERT_LT(list.maps.size(), list.lights.size());
   std::vector<bool> met(lights.size(), false);
   uint32_t next = 0;
@@ -157,8 +160,8 @@ TEST(LightListTest, LightClustersKeepTheirLightsTogether) {
     ASSERT_LE(next, list.lights.size());
     for (uint32_t i = map.first_light; i < next; ++i) {
       const frame::FrameLight& light = list.lights[i];
-      EXPECT_FALSE(met[list.pack_light[i]]);
-      met[list.pack_light[i]] = true;
+      EXPECT_FALSE(met[list.light_id[i]]);
+      met[list.light_id[i]] = true;
       EXPECT_EQ(map.is_directional != 0, light.type == static_cast<uint32_t>(pack::LightType::directional));
       if (map.is_directional) continue;
       EXPECT_LE(glm::distance(light.position_ws, map.center_ws) + light.range_m, map.range_m * 1.000001f);
@@ -175,10 +178,10 @@ TEST(LightListTest, ClustersOfOneLightEachAreTheReferencesList) {
     lights.push_back(light_at(glm::vec3(0, 0, -9) + uniform3(random, -5, 5), uniform(random, 1, 4)));
   lights.push_back(lights[3]);  // two lights in one place share a map even so
   Recipe recipe;
-  const LightList reference = select_lights(lights, recipe, {}, 1.0f);
+  const LightList reference = select_lights(world_of(lights), recipe, {}, 1.0f);
   recipe.select = Select::light_clusters;
   recipe.d_init_m = 0.0f;
-  const LightList clustered = select_lights(lights, recipe, {}, 1.0f);
+  const LightList clustered = select_lights(world_of(lights), recipe, {}, 1.0f);
   EXPECT_EQ(clustered.lights.size(), reference.lights.size());
   EXPECT_EQ(clustered.maps.size(), reference.maps.size() - 1);
   for (const frame::ShadowMap& map : clustered.maps) EXPECT_EQ(map.filter_radius_m, 0.0f);

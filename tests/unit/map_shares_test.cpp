@@ -32,8 +32,8 @@ TEST(MapSharesTest, TwoHalfBlindMapsShareALightAsTheSquaresSay) {
     if (is_left != is_right) (is_left ? left : right) += w * w;
   }
   const std::vector<uint32_t> center{0, 1, 0};
-  const std::vector<std::vector<uint32_t>> lenders{{1, 2}, {0, 2}, {0, 1}};
-  const auto members = share_out(*s.samples, center, lenders);
+  const std::vector<std::vector<uint32_t>> candidates{{1, 2}, {0, 2}, {0, 1}};
+  const auto members = share_out(*s.samples, center, candidates);
   ASSERT_EQ(members.size(), 4u);
   EXPECT_EQ(members[1].light, 2u);
   EXPECT_NEAR(members[1].share, left / (left + right), 0.03);
@@ -47,17 +47,17 @@ TEST(MapSharesTest, ErrNoMoreThanOneMapForEachLightAndAddUp) {
   for (uint32_t seed = 0; seed < 6; ++seed) {
     const Sampled s(pillars(seed));
     std::vector<uint32_t> center;
-    std::vector<std::vector<uint32_t>> lenders(24);
+    std::vector<std::vector<uint32_t>> candidates(24);
     std::vector<MapMember> whole;
     for (uint32_t light = 0; light < 24; ++light) {
       center.push_back(light % (3 + seed));
       whole.push_back({light, center.back(), 0.0f});
       for (uint32_t other = 0; other < 24; ++other)
-        if (other != light && (light + other) % 5 != 0) lenders[light].push_back(other);
+        if (other != light && (light + other) % 5 != 0) candidates[light].push_back(other);
     }
     std::stable_sort(whole.begin(), whole.end(),
                      [](const MapMember& a, const MapMember& b) { return a.center < b.center; });
-    const auto members = share_out(*s.samples, center, lenders);
+    const auto members = share_out(*s.samples, center, candidates);
     EXPECT_LT(s.rmse(members), 0.97 * s.rmse(whole)) << seed;
     for (const auto& [light, sum] : shares_of(members)) EXPECT_NEAR(sum, 1.0f, 1e-4f);
     for (const MapMember& m : members) {
@@ -78,11 +78,11 @@ TEST(MapSharesTest, AreWorthMoreThanTheBestOfTheirMapsAlone) {
     const Sampled s(pillars(seed));
     for (uint32_t light = 4; light < 24; ++light) {
       std::vector<uint32_t> center(24);
-      std::vector<std::vector<uint32_t>> lenders(24);
+      std::vector<std::vector<uint32_t>> candidates(24);
       std::iota(center.begin(), center.end(), 0u);
       center[light] = light % 4;
-      for (uint32_t other = 0; other < 4; ++other) lenders[light].push_back(other);
-      const auto members = share_out(*s.samples, center, lenders);
+      for (uint32_t other = 0; other < 4; ++other) candidates[light].push_back(other);
+      const auto members = share_out(*s.samples, center, candidates);
       const double several = s.rmse(members);
       if (several < 1e-3) continue;  // less than the tone curve's table can tell
       for (const MapMember& m : members) {

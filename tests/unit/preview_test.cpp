@@ -75,7 +75,8 @@ TEST(PreviewTest, SelectsWhatAFrameOfTheSameLightsWould) {
     random_settings(random, call);
     ASSERT_EQ(call.select(), CHANDELIER_PREVIEW_OK) << call.error;
     Expected expected(call);
-    Predictor predictor(expected.view);
+    const World world(expected.view);
+    Predictor predictor(world);
     const Prediction wanted = predictor.plan(expected.settings);
     const Budget budget{
         .max_shadow_maps =

@@ -37,7 +37,8 @@ frame::FrameLight sun(const glm::vec3& direction) {
 std::vector<uint8_t> ask(const pack::File& pack, const frame::FrameLight& light,
                          const std::vector<SurfacePoint>& points, float radius_m = 0.0f) {
   std::vector<uint8_t> visibility(points.size(), 99);
-  ray_traced_visibility(pack.view())({light, near_m, radius_m, glm::vec3(0.0f), points, visibility});
+  const World world(pack);
+  ray_traced_visibility(world)({light, near_m, radius_m, glm::vec3(0.0f), points, visibility});
   return visibility;
 }
 uint8_t ask(const pack::File& pack, const frame::FrameLight& light, const SurfacePoint& point) {

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "shadows/project/shadow_views.h"
+#include "world_of.h"
 
 namespace chandelier {
 namespace {
@@ -141,7 +142,7 @@ pack::Light lamp(pack::LightType type, const glm::vec3& direction, float outer_r
 }
 
 std::vector<frame::ShadowView> views_of(const pack::Light& light, LightList& list) {
-  list = select_lights({&light, 1}, {}, {}, 1.0f);
+  list = select_lights(test::world_of({&light, 1}), {}, {}, 1.0f);
   return project_lights(list, {}, 1.0f, {{-5, 0, -10}, {5, 3, 5}}, 256);
 }
 
@@ -221,7 +222,7 @@ TEST(ShadowViewsTest, ClustersOfSpotLightsKeepEveryFaceThatAMemberReaches) {
     }
     Recipe recipe{.select = Select::light_clusters, .filter = Filter::pcf, .d_init_m = 3.0f};
     recipe.area_radius = i % 2 == 0 ? AreaRadius::spread : AreaRadius::d_min;
-    LightList list = select_lights(lights, recipe, {}, 1.0f);
+    LightList list = select_lights(test::world_of(lights), recipe, {}, 1.0f);
     const auto views = project_lights(list, {}, 1.0f, {{-5, 0, -10}, {5, 3, 5}}, 256);
     ASSERT_EQ(list.maps.size(), 1u);
     spared += 6 - static_cast<uint32_t>(views.size());

@@ -59,16 +59,18 @@ inline test::Scene pillars(uint32_t seed) {
 
 struct Sampled {
   explicit Sampled(const test::Scene& scene, const SampleSettings& settings = {})
-      : pack(scene.open()), rays(pack.view()), sampled(pack.view(), rays), numbers(pack.view().lights.size()) {
-    std::iota(numbers.begin(), numbers.end(), 0u);
-    samples.emplace(sampled, numbers, from_above(), 16.0f / 9.0f, settings);
+      : pack(scene.open()), world(pack), rays(pack.view()), sampled(pack.view(), rays) {
+    std::vector<LightId> shadowed;
+    for (LightId id = 0; id < world.lights().size(); ++id)
+      if (world.lights()[id].shadowless == 0) shadowed.push_back(id);
+    samples.emplace(sampled, sampled_lights(world, shadowed), from_above(), 16.0f / 9.0f, settings);
   }
   double rmse(const std::vector<MapMember>& members) const { return estimated_rmse(*samples, members, hard); }
 
   pack::File pack;
+  World world;
   rays::PackRays rays;
   SampledScene sampled;
-  std::vector<uint32_t> numbers;
   std::optional<LightSamples> samples;
 };
 

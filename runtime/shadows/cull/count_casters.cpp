@@ -40,11 +40,12 @@ bool survives(const frame::ShadowView& view, const std::array<glm::vec4, 6>& pla
 
 }  // namespace
 
-CasterCounts count_casters(Cull cull, std::span<const frame::ShadowView> views, const pack::View& pack) {
+CasterCounts count_casters(Cull cull, std::span<const frame::ShadowView> views, const World& world) {
+  const pack::View& pack = world.pack();
   CasterCounts counts;
   for (const frame::ShadowView& view : views) {
     const auto planes = planes_of(view);
-    for (const pack::BatchInstance& candidate : pack.batch_instances) {
+    for (const pack::BatchInstance& candidate : world.batch_instances()) {
       if (!pack::throws_shadow(pack, candidate)) continue;
       if (cull == Cull::light_frustum && !survives(view, planes, candidate)) continue;
       ++counts.draws;

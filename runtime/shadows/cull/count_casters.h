@@ -6,7 +6,7 @@
 
 #include "frame/recipe.h"
 #include "frame_schema.h"
-#include "pack_schema.h"
+#include "world/world.h"
 
 namespace chandelier {
 
@@ -15,6 +15,6 @@ struct CasterCounts {
   uint64_t draws = 0;
   uint64_t triangles = 0;
 };
-CasterCounts count_casters(Cull cull, std::span<const frame::ShadowView> views, const pack::View& pack);
+CasterCounts count_casters(Cull cull, std::span<const frame::ShadowView> views, const World& world);
 
 }  // namespace chandelier

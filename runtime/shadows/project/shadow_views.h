@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lights/light_list.h"
-#include "scene/bounds.h"
+#include "world/bounds.h"
 
 namespace chandelier {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frame/camera.h"
+#include "view/camera.h"
 
 #include <cmath>
 
