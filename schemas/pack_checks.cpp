@@ -135,7 +135,10 @@ std::string light_fault(const Light& light) {
   Light alone = light;
   alone.voxel = alone.node = none;
   alone.name = {};
+  BakeInfo info;  // which validate() looks for
+  info.batch_triangles = 1;
   View view;
+  view.bake_info = &info;
   view.lights = {&alone, 1};
   const std::string line = validate(view, 1);
   return line.empty() ? fault(alone) : line.substr(at("lights", 0).size());

@@ -44,8 +44,9 @@ RenderSettings LiveScene::put_on_device(const Scene& scene) {
   on_device_.reset();
   OnDevice made{.visibility = visibility_for(scene.options.recipes, scene.world),
                 .renderer = Renderer(device_, scene.world, renderer_options(scene.options))};
-  const RenderSettings wanted =
+  RenderSettings wanted =
       render_settings(scene.options, scene.options.recipes.front().recipe, scene.camera.camera, made.visibility);
+  wanted.search_beside_frames = true;
   made.renderer.warm_up(wanted);
   on_device_.emplace(std::move(made));
   return wanted;

@@ -145,7 +145,7 @@ class Window::Screen {
   bool update(bool draws_anyway) {
     const bool is_replaced = live_.follow();
     if (is_replaced) last_slot_.reset();
-    if (is_replaced || draws_anyway || !(of(live_.settings) == drawn_))
+    if (is_replaced || draws_anyway || live_.renderer().has_new_selection() || !(of(live_.settings) == drawn_))
       show(true);
     else if (impl_.is_covered)
       show(false);

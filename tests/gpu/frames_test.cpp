@@ -105,7 +105,8 @@ class FramesTest : public GpuTest {};
 
 TEST_F(FramesTest, RecordedFramesAreTheDrawnOnesWithOneTwoAndThreeInFlight) {
   const pack::File pack = lamps_over_boxes().open();
-  Renderer drawing(device(), pack);
+  const World world(pack);
+  Renderer drawing(device(), world);
   std::vector<std::vector<uint8_t>> drawn;
   std::vector<FrameStats> drawn_stats;
   constexpr uint32_t frames = 7;
@@ -114,7 +115,7 @@ TEST_F(FramesTest, RecordedFramesAreTheDrawnOnesWithOneTwoAndThreeInFlight) {
     drawn.push_back(drawing.read_back().shown);
   }
   for (const uint32_t slots : {1u, 2u, 3u}) {
-    Renderer renderer(device(), pack, {.frames_in_flight = slots});
+    Renderer renderer(device(), world, {.frames_in_flight = slots});
     Host host(device(), renderer, slots);
     std::vector<uint32_t> slot_of;
     const auto compare = [&](uint32_t frame) {
@@ -136,7 +137,8 @@ TEST_F(FramesTest, RecordedFramesAreTheDrawnOnesWithOneTwoAndThreeInFlight) {
 // A frame that needs larger images and buffers than the one that is still on its way.
 TEST_F(FramesTest, WhatAFrameOnItsWayUsesIsKept) {
   const pack::File pack = lamps_over_boxes().open();
-  Renderer drawing(device(), pack), renderer(device(), pack);
+  const World world(pack);
+  Renderer drawing(device(), world), renderer(device(), world);
   Host host(device(), renderer, 2);
   RenderSettings large = settings_from(1);
   large.width = 3 * width;
@@ -155,7 +157,8 @@ TEST_F(FramesTest, WhatAFrameOnItsWayUsesIsKept) {
 
 TEST_F(FramesTest, RaysCannotBeRecorded) {
   const pack::File pack = lamps_over_boxes().open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   RenderSettings settings = settings_from(0);
   settings.recipe.filter = Filter::rays;
   settings.recipe.deliver = Deliver::textures;
@@ -165,12 +168,13 @@ TEST_F(FramesTest, RaysCannotBeRecorded) {
 
 TEST_F(FramesTest, TwoDevicesLiveSideBySide) {
   const pack::File pack = lamps_over_boxes().open();
-  Renderer renderer(device(), pack);
+  const World world(pack);
+  Renderer renderer(device(), world);
   renderer.draw(settings_from(0));
   const auto alone = renderer.read_back().shown;
   {
     gpu::Device second({.device = {}, .validation = true});
-    Renderer other(second, pack);
+    Renderer other(second, world);
     other.draw(settings_from(0));
     gpu::list_devices();  // makes and ends an instance without extensions
     renderer.draw(settings_from(0));
@@ -281,13 +285,14 @@ struct Engine {
 
 TEST_F(FramesTest, AHostsDeviceIsAdoptedAndSteadyFramesAllocateNothing) {
   const pack::File pack = lamps_over_boxes().open();
-  Renderer drawing(device(), pack);
+  const World world(pack);
+  Renderer drawing(device(), world);
   drawing.draw(settings_from(0));
   const auto drawn = drawing.read_back().shown;
 
   const Engine engine;
   gpu::Device adopted(engine.host());
-  Renderer renderer(adopted, pack);
+  Renderer renderer(adopted, world);
   Host host(adopted, renderer, 2);
   const RenderSettings still = settings_from(0);
   std::vector<RenderSettings> moving;

@@ -174,9 +174,10 @@ TEST_F(TexturesTest, AnisotropyKeepsWhatRunsAwayFromTheEyeSharp) {
   scene.filter_textures();
   scene.add(level_square({0, 0, 0}, 4.0f), scene.add_material(unlit(texture)));
   const pack::File pack = scene.open();
+  const World world(pack);
   const RenderSettings settings = settings_for(look({0, 0.15f, 4.5f}, {0, 0, 0}, 0.5f), 64, 64, Recipe());
   const auto contrast = [&](std::optional<float> anisotropy) {
-    Renderer renderer(device(), pack, {.anisotropy = anisotropy});
+    Renderer renderer(device(), world, {.anisotropy = anisotropy});
     renderer.draw(settings);
     const Picture picture = renderer.read_back();
     float sum = 0.0f;

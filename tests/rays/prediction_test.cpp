@@ -324,6 +324,25 @@ TEST(Prediction, TheReferencesPathIsNotTakenWhereAGroupSharesAMap) {
   EXPECT_EQ(stats.centers[3], stats.centers[17]);
 }
 
+// Nor where a light is held at another's map: it would lose that.
+TEST(Prediction, TheReferencesPathKeepsHeldCenters) {
+  const pack::Contents pack = lights_in_a_box(20, 6);
+  const World world(pack::view_of(pack));
+  Predictor predictor(world);
+  RenderSettings settings = clustered(DistanceScaling::grow);
+  settings.recipe.d_init_m = 0.0f;
+  settings.centers.assign(20, pack::none);
+  settings.centers[3] = 17;
+  const Prediction held = predictor.plan(settings);
+  EXPECT_EQ(held.stats.shadow_maps, 19u);
+  EXPECT_EQ(held.stats.centers[3], 17u);
+  EXPECT_EQ(held.stats.reference_path, 0u);
+  EXPECT_EQ(held.plan.recipe.filter, Filter::pcf);  // a shared map needs it
+
+  settings.centers[3] = 3;
+  EXPECT_EQ(predictor.plan(settings).stats.reference_path, 1u);  // which is where the reference has it too
+}
+
 // It is hard; a light with a radius, in view or not, keeps the filter that was asked for.
 TEST(Prediction, TheReferencesPathKeepsLightsWithARadiusSoft) {
   const pack::Contents pack = lights_in_a_box(20, 6);

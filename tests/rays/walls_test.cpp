@@ -73,6 +73,30 @@ Place two_rooms() {
   return place;
 }
 
+// What is remembered of a pair is forgotten when one of the two moves, or an instance.
+TEST(Walls, AreLookedForAnewWhereSomethingMoved) {
+  Place place = two_rooms();
+  const LightId left = place.light({-0.5f, 2, -1}), right = place.light({0.5f, 2, -1});
+  const pack::Contents& pack = place.bake();
+  World world(pack::view_of(pack));
+  rays::PackRays rays(world.pack());
+  Walls walls(world, rays);
+  EXPECT_TRUE(walls.between(WallTest::rays, left, right));
+  const pack::Light before = world.lights()[right];
+  pack::Light beside = before;
+  beside.position_ws = {-0.5f, 2, -1.5f};
+  world.set_light(right, beside);
+  EXPECT_FALSE(walls.between(WallTest::rays, left, right));
+  world.set_light(right, before);
+  EXPECT_TRUE(walls.between(WallTest::rays, left, right));
+
+  const std::array<glm::vec4, 3> away{glm::vec4(1, 0, 0, 50), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0)};
+  world.set_transform(0, away);
+  rays.set_transform(0, away);
+  EXPECT_FALSE(walls.between(WallTest::rays, left, right));
+  EXPECT_THROW(walls.between(WallTest::voxels, left, right), std::invalid_argument);
+}
+
 TEST(Walls, StandBetweenLampsBackToBack) {
   Place place = two_rooms();
   const uint32_t left = place.light({-0.25f, 1.7f, 0}), right = place.light({0.25f, 1.7f, 0});

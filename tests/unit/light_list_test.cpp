@@ -98,6 +98,22 @@ TEST(LightListTest, AGroupIsOfDirectionalLightsOrOfOthersAndOfThoseInView) {
             5u);  // one map per light is what the recipe asks for
 }
 
+TEST(LightListTest, ARemovedLightIsInNoListAndAnAddedOneIs) {
+  const pack::Light lights[]{light_at({0, 0, -4}, 3), light_at({0.1f, 0, -4}, 2), light_at({3, 0, -9}, 2)};
+  World world = world_of(lights, {.lights = 1});
+  world.remove_light(0);
+  const LightId added = world.add_light(light_at({3.1f, 0, -9}, 5));
+  for (const bool out_of_view : {false, true}) {
+    const LightList list = select_lights(world, clustering(0.5f), {}, 1.0f, {.out_of_view = out_of_view});
+    EXPECT_EQ(centers_by_light(world, list), (std::vector<uint32_t>{pack::none, 1, added, added}));
+    EXPECT_EQ(list.lights_in_view, 3u);
+    EXPECT_TRUE(list.shadowless.empty());
+  }
+  const std::vector<uint32_t> at_the_removed{pack::none, 0, pack::none, pack::none};
+  const LightList held = select_lights(world, clustering(0.5f), {}, 1.0f, {.centers = at_the_removed});
+  EXPECT_EQ(centers_by_light(world, held)[1], 1u);
+}
+
 TEST(LightListTest, LightsWithoutShadowTakeNoMap) {
   pack::Light lights[]{light_at({0, 0, -4}, 3), light_at({0, 0, -4.1f}, 2), light_at({0, 0, 90}, 8), sun({0, -1, 0}, 1),
                        light_at({0, 0, -4.2f}, 1)};
