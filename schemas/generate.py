@@ -292,7 +292,7 @@ def environment():
 
 
 def outputs(schema):
-    """(file, template, record) of everything the build needs."""
+    """(file, template, record or stage) of everything the build needs."""
     name = schema.name
     files = [(f"{name}_schema.h", "schema.h.j2", None), (f"{name}_schema.glsl", "schema.glsl.j2", None),
              (f"{name}_echo_list.h", "echo_list.h.j2", None)]
@@ -300,6 +300,10 @@ def outputs(schema):
         files += [(f"{name}_schema.cpp", "schema.cpp.j2", None), (f"{name}_schema.py", "schema.py.j2", None)]
     if schema.recipe.stages:
         files.append(("recipe_schema.h", "recipe.h.j2", None))
+        for stage in schema.recipe.stages:
+            if stage.folder:
+                files += [(f"stages/{stage.member}.h", "stage.h.j2", stage),
+                          (f"stages/{stage.member}_shaders.h", "stage_shaders.h.j2", stage)]
     return files + [(f"echo/{r.name}.comp", "echo.comp.j2", r) for r in schema.gpu_records]
 
 
@@ -315,13 +319,15 @@ def main():
         parser.error("one of --out, --page, --check-page is needed")
     schema, env = Schema(options.schema), environment()
     if options.out:
-        for name, template, record in outputs(schema):
+        for name, template, subject in outputs(schema):
             target = options.out / name
             if options.list:
                 print(target)
                 continue
             target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(env.get_template(template).render(s=schema, record=record), encoding="utf-8")
+            text = env.get_template(template).render(s=schema, record=subject, stage=subject)
+            if not target.exists() or target.read_text(encoding="utf-8") != text:  # what includes it stays as it is
+                target.write_text(text, encoding="utf-8")
     if options.page or options.check_page:
         page = env.get_template("FORMAT.md.j2" if schema.sections else "RECIPES.md.j2").render(s=schema)
         if options.page:

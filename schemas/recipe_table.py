@@ -16,6 +16,11 @@ def literal(kind, text):
     return {"f32": f"{float(text)!r}f", "u32": text + "u", "u64": text + "ull"}[kind]
 
 
+def camel(name):
+    """light-frustum -> LightFrustum."""
+    return "".join(part.capitalize() for part in name.split("-"))
+
+
 class Answer:
     """One answer of a stage, or one choice of a setting."""
 
@@ -27,6 +32,7 @@ class Answer:
             raise SchemaError(f"{place}: the name does not match {DASHED}")
         self.identifier = check_name(element.get("identifier", self.name.replace("-", "_")), SNAKE, place)
         self.constant = self.name.replace("-", "_").upper()
+        self.camel = camel(self.name)
         if not self.meaning:
             raise SchemaError(f"{place}: has no text that explains it")
 
@@ -60,10 +66,10 @@ class Stage(Choice):
         if not re.fullmatch(DASHED, name or ""):
             raise SchemaError(f"stage: the name does not match {DASHED} ({name})")
         check_attributes(element, name)
-        super().__init__(element, name, "".join(part.capitalize() for part in name.split("-")))
+        super().__init__(element, name, camel(name))
         self.member = name.replace("-", "_")
         self.constant = self.member.upper()
-        self.question = element.get("question")
+        self.question, self.folder = element.get("question"), element.get("folder")
         if not self.question:
             raise SchemaError(f"{name}: has no question")
 

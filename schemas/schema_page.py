@@ -10,7 +10,7 @@ ATTRIBUTES = {
     "record": {"name", "gpu"},
     "field": {"name", "type", "count", "unit", "min", "max", "enum", "index", "optional", "run", "length"},
     "section": {"kind", "name", "record", "type", "same_count", "min_count", "max_count"},
-    "stage": {"name", "question", "default"},
+    "stage": {"name", "question", "default", "folder"},
     "answer": {"name", "identifier"},
     "setting": {"name", "option", "placeholder", "type", "enum", "unit", "scale", "default", "least", "most", "optional"},
 }

@@ -34,6 +34,13 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
           .headlight = settings.headlight};
 }
 
+void refuse_unknown_answers(const Recipe& recipe) {
+  const auto check = [](auto answer) {
+    if (!is_valid(answer)) refuse_answer(answer);
+  };
+  for (size_t stage = 0; stage < stage_choices().size(); ++stage) with_answer(recipe, stage, check);
+}
+
 // LightCluster §5.4: where clusters are nearly as many as lights, a soft filter costs more than the maps saved. But the
 // reference knows no shared maps: not those of groups, which are what their lights' author asked for, and not those of
 // lights whose centres are held.
@@ -60,6 +67,7 @@ Recipe reference_of(Recipe recipe, bool has_area_lights) {
 
 FramePlan plan_frame(const World& world, const RenderSettings& settings, const RoundLimits& limits,
                      Surroundings* surroundings) {
+  refuse_unknown_answers(settings.recipe);
   const float aspect = aspect_of(settings);
   const SelectionInputs inputs{.surroundings = surroundings,
                                .ambient = settings.ambient,

@@ -182,7 +182,7 @@ void Renderer::Impl::record_start(const Recording& frame) {
   slot.timers.add_cpu("project", plan.project_ms);
   {
     const Timed timed(frame, "g-buffer");
-    record_cull(cmd, device, cull.light_frustum, scene,
+    record_cull(cmd, device, cull[Cull::light_frustum], scene,
                 {.views = resources.views.buffer(),
                  .counters = resources.counters,
                  .first_view = static_cast<uint32_t>(plan.views.size() - 1),
@@ -205,7 +205,7 @@ void Renderer::Impl::record_shadow_maps(const Recording& frame, uint32_t number)
   const Round& round = plan.rounds[number];
   {
     const Timed timed(frame, "cull");
-    record_cull(cmd, device, plan.recipe.cull == Cull::none ? cull.none : cull.light_frustum, scene,
+    record_cull(cmd, device, cull[plan.recipe.cull], scene,
                 {.views = resources.views.buffer(),
                  .counters = resources.counters,
                  .first_view = round.first_view,

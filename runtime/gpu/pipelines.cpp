@@ -9,6 +9,8 @@
 namespace chandelier::gpu {
 namespace {
 
+constexpr uint32_t most_bindings = 32;  // the least that maxPushDescriptors may be
+
 Owned<VkShaderModule> make_module(const Device& device, std::span<const uint32_t> spirv) {
   const VkShaderModuleCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
@@ -17,11 +19,30 @@ Owned<VkShaderModule> make_module(const Device& device, std::span<const uint32_t
   return {device.handle, module, device->vkDestroyShaderModule};
 }
 
-void make_layout(const Device& device, const LayoutInfo& info, Pipeline& pipeline) {
+// Stages of a graphics pipeline may share bindings, and then have to agree on them.
+void add_shader(const Shader& shader, size_t sets, Pipeline& pipeline) {
+  const auto fail = [&](const Binding& binding, const std::string& what) {
+    throw Error(std::string(shader.name) + ": " + std::string(binding.name) + ": " + what);
+  };
+  for (const Binding& binding : shader.bindings) {
+    if (binding.set >= sets) fail(binding, "is in set " + std::to_string(binding.set) + ", which has no layout");
+    if (binding.set != 0) continue;
+    if (binding.number >= most_bindings) fail(binding, "has a number of " + std::to_string(most_bindings) + " or more");
+    const auto same = std::find_if(pipeline.bindings.begin(), pipeline.bindings.end(),
+                                   [&](const Binding& other) { return other.number == binding.number; });
+    if (same == pipeline.bindings.end())
+      pipeline.bindings.push_back(binding);
+    else if (same->type != binding.type || same->name != binding.name)
+      fail(binding, "has the number of " + std::string(same->name) + " in " + std::string(pipeline.name));
+  }
+  pipeline.push_bytes = std::max(pipeline.push_bytes, shader.push_bytes);
+}
+
+void make_layout(const Device& device, std::span<const VkDescriptorSetLayout> more_sets, Pipeline& pipeline) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (VkDescriptorType type : info.bindings)
-    bindings.push_back({.binding = static_cast<uint32_t>(bindings.size()),
-                        .descriptorType = type,
+  for (const Binding& binding : pipeline.bindings)
+    bindings.push_back({.binding = binding.number,
+                        .descriptorType = binding.type,
                         .descriptorCount = 1,
                         .stageFlags = VK_SHADER_STAGE_ALL});
   const VkDescriptorSetLayoutCreateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
@@ -33,12 +54,12 @@ void make_layout(const Device& device, const LayoutInfo& info, Pipeline& pipelin
   pipeline.set_layout = {device.handle, set, device->vkDestroyDescriptorSetLayout};
 
   std::vector<VkDescriptorSetLayout> sets{set};
-  sets.insert(sets.end(), info.more_sets.begin(), info.more_sets.end());
-  const VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, info.push_bytes};
+  sets.insert(sets.end(), more_sets.begin(), more_sets.end());
+  const VkPushConstantRange range{VK_SHADER_STAGE_ALL, 0, pipeline.push_bytes};
   const VkPipelineLayoutCreateInfo layout_info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                                .setLayoutCount = static_cast<uint32_t>(sets.size()),
                                                .pSetLayouts = sets.data(),
-                                               .pushConstantRangeCount = info.push_bytes ? 1u : 0u,
+                                               .pushConstantRangeCount = pipeline.push_bytes ? 1u : 0u,
                                                .pPushConstantRanges = &range};
   VkPipelineLayout layout = VK_NULL_HANDLE;
   check(device->vkCreatePipelineLayout(device.handle, &layout_info, nullptr, &layout), "vkCreatePipelineLayout");
@@ -77,11 +98,11 @@ Bound storage_image(const Image& image) {
   return {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .image = {VK_NULL_HANDLE, image.view, VK_IMAGE_LAYOUT_GENERAL}};
 }
 
-Pipeline make_compute_pipeline(const Device& device, const LayoutInfo& layout, std::span<const uint32_t> spirv,
-                               const Constants& constants) {
-  Pipeline pipeline{.bind_point = VK_PIPELINE_BIND_POINT_COMPUTE};
-  make_layout(device, layout, pipeline);
-  const auto module = make_module(device, spirv);
+Pipeline make_compute_pipeline(const Device& device, const Shader& shader, const Constants& constants) {
+  Pipeline pipeline{.bind_point = VK_PIPELINE_BIND_POINT_COMPUTE, .name = shader.name, .local_size = shader.local_size};
+  add_shader(shader, 1, pipeline);
+  make_layout(device, {}, pipeline);
+  const auto module = make_module(device, shader.words);
   const Specialization specialization(constants);
   const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                                          .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization),
@@ -94,14 +115,16 @@ Pipeline make_compute_pipeline(const Device& device, const LayoutInfo& layout, s
 }
 
 Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
-  Pipeline pipeline;
-  make_layout(device, in.layout, pipeline);
+  Pipeline pipeline{.name = in.vertex.name};
+  add_shader(in.vertex, in.more_sets.size() + 1, pipeline);
+  if (in.fragment) add_shader(*in.fragment, in.more_sets.size() + 1, pipeline);
+  make_layout(device, in.more_sets, pipeline);
   const Specialization specialization(in.constants);
-  const auto vertex = make_module(device, in.vertex);
+  const auto vertex = make_module(device, in.vertex.words);
   Owned<VkShaderModule> fragment;
   std::vector<VkPipelineShaderStageCreateInfo> stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, specialization)};
-  if (!in.fragment.empty()) {
-    fragment = make_module(device, in.fragment);
+  if (in.fragment) {
+    fragment = make_module(device, in.fragment->words);
     stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, specialization));
   }
 
@@ -170,34 +193,67 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
   return pipeline;
 }
 
-void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Bound> resources) {
-  std::array<VkWriteDescriptorSet, 32> writes;  // the least that maxPushDescriptors may be
+namespace {
+
+// Resources are mostly named in the order of the bindings, so the one at `place` is tried first.
+const Binding& binding_for(const Pipeline& pipeline, const Resource& resource, size_t place) {
+  const auto& all = pipeline.bindings;
+  const auto is_it = [&](const Binding& binding) { return binding.name == resource.name; };
+  const auto found = place < all.size() && is_it(all[place]) ? all.begin() + static_cast<ptrdiff_t>(place)
+                                                             : std::find_if(all.begin(), all.end(), is_it);
+  const auto fail = [&](const char* what) {
+    throw Error(std::string(pipeline.name) + ": " + std::string(resource.name) + ": " + what);
+  };
+  if (found == all.end()) fail("there is no such binding");
+  if (found->type != resource.bound.type) fail("what is bound is of another type");
+  return *found;
+}
+
+}  // namespace
+
+void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Resource> resources) {
+  std::array<VkWriteDescriptorSet, most_bindings> writes;
   uint32_t count = 0;
-  for (const Bound& bound : resources) {
+  uint32_t bound = 0;  // a bit for each binding's number
+  for (const Resource& resource : resources) {
+    const Binding& binding = binding_for(pipeline, resource, count);
+    bound |= 1u << binding.number;
     writes.at(count) = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                        .dstBinding = count,
+                        .dstBinding = binding.number,
                         .descriptorCount = 1,
-                        .descriptorType = bound.type,
-                        .pImageInfo = &bound.image,
-                        .pBufferInfo = &bound.buffer};
+                        .descriptorType = binding.type,
+                        .pImageInfo = &resource.bound.image,
+                        .pBufferInfo = &resource.bound.buffer};
     ++count;
   }
+  for (const Binding& binding : pipeline.bindings)
+    if ((bound >> binding.number & 1u) == 0)
+      throw Error(std::string(pipeline.name) + ": " + std::string(binding.name) + ": nothing is bound");
   cmd->vkCmdBindPipeline(cmd, pipeline.bind_point, pipeline.handle);
   cmd->vkCmdPushDescriptorSetKHR(cmd, pipeline.bind_point, pipeline.layout, 0, count, writes.data());
 }
 
 void push_bytes(Commands cmd, const Pipeline& pipeline, std::span<const std::byte> bytes) {
+  if (bytes.size() != pipeline.push_bytes)
+    throw Error(std::string(pipeline.name) + ": takes " + std::to_string(pipeline.push_bytes) +
+                " bytes of push constants (" + std::to_string(bytes.size()) + ")");
   cmd->vkCmdPushConstants(cmd, pipeline.layout, VK_SHADER_STAGE_ALL, 0, static_cast<uint32_t>(bytes.size()),
                           bytes.data());
 }
 
-void dispatch(Commands cmd, const Device& device, uint64_t threads, uint32_t group) {
+void dispatch(Commands cmd, const Device& device, const Pipeline& pipeline, uint64_t threads) {
+  const uint64_t group = pipeline.local_size[0];
   const uint64_t groups = (threads + group - 1) / group;
   if (groups == 0) return;
   const uint64_t x = std::min<uint64_t>(groups, device.limits.maxComputeWorkGroupCount[0]);
   const uint64_t y = (groups + x - 1) / x;
   if (y > device.limits.maxComputeWorkGroupCount[1]) throw Error("a dispatch is too large for this device");
   cmd->vkCmdDispatch(cmd, static_cast<uint32_t>(x), static_cast<uint32_t>(y), 1);
+}
+
+void dispatch_over(Commands cmd, const Pipeline& pipeline, uint32_t width, uint32_t height) {
+  const auto [x, y, z] = pipeline.local_size;
+  cmd->vkCmdDispatch(cmd, (width + x - 1) / x, (height + y - 1) / y, 1);
 }
 
 }  // namespace chandelier::gpu

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pipelines whose set 0 is pushed: a pass names its resources where it is recorded.
+// Pipelines whose set 0 is pushed: a pass names its resources where it is recorded. What a pipeline takes is read from
+// its shaders (gpu/shader.h).
 #pragma once
 
 #include <initializer_list>
@@ -7,10 +8,11 @@
 #include <vector>
 
 #include "gpu/resources.h"
+#include "gpu/shader.h"
 
 namespace chandelier::gpu {
 
-/// One binding's resource, in binding order. Make them with the functions below.
+/// One binding's resource. Make them with the functions below.
 struct Bound {
   VkDescriptorType type;
   VkDescriptorBufferInfo buffer{};
@@ -20,25 +22,27 @@ Bound storage(const Buffer& buffer);
 Bound sampled(VkImageView view, VkSampler sampler, VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 Bound storage_image(const Image& image);
 
+/// A resource and the binding that takes it, by its name in GLSL.
+struct Resource {
+  std::string_view name;
+  Bound bound;
+};
+
 struct Pipeline {
   Owned<VkDescriptorSetLayout> set_layout;
   Owned<VkPipelineLayout> layout;
   Owned<VkPipeline> handle;
   VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
-};
-
-/// `bindings[i]` is binding i of set 0; `push_bytes` of push constants; `more_sets` follow set 0.
-struct LayoutInfo {
-  std::vector<VkDescriptorType> bindings;
-  uint32_t push_bytes = 0;
-  std::vector<VkDescriptorSetLayout> more_sets;
+  std::string_view name;                 // of its first shader
+  std::vector<Binding> bindings;         // of set 0, by all its shaders
+  uint32_t push_bytes = 0;               // of push constants
+  std::array<uint32_t, 3> local_size{};  // threads of a work group
 };
 
 /// Specialization constants 0, 1, 2 … of every stage.
 using Constants = std::vector<uint32_t>;
 
-Pipeline make_compute_pipeline(const Device& device, const LayoutInfo& layout, std::span<const uint32_t> spirv,
-                               const Constants& constants = {});
+Pipeline make_compute_pipeline(const Device& device, const Shader& shader, const Constants& constants = {});
 
 struct VertexStream {
   uint32_t stride_bytes;
@@ -46,9 +50,9 @@ struct VertexStream {
 };
 
 struct GraphicsInfo {
-  LayoutInfo layout;
-  std::span<const uint32_t> vertex;
-  std::span<const uint32_t> fragment;  // may be empty: depth only
+  const Shader& vertex;
+  const Shader* fragment = nullptr;              // absent: depth only
+  std::vector<VkDescriptorSetLayout> more_sets;  // they follow set 0
   std::vector<VertexStream> streams;
   std::vector<VkFormat> colors;
   VkFormat depth = VK_FORMAT_UNDEFINED;
@@ -57,16 +61,19 @@ struct GraphicsInfo {
 /// Triangle lists, reversed depth (greater passes), dynamic viewport, scissor and cull mode.
 Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& info);
 
-/// Binds the pipeline and its set 0.
-void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Bound> resources);
+/// Binds the pipeline and its set 0. Throws Error unless each binding gets one resource, of its type.
+void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Resource> resources);
 
+/// Throws Error unless they are as many bytes as the shaders declare.
 void push_bytes(Commands cmd, const Pipeline& pipeline, std::span<const std::byte> bytes);
 template <typename Constants>
 void push_constants(Commands cmd, const Pipeline& pipeline, const Constants& constants) {
   push_bytes(cmd, pipeline, std::as_bytes(std::span(&constants, 1)));
 }
 
-/// Enough groups of `group` threads for `threads`, spread over y where x alone cannot hold them.
-void dispatch(Commands cmd, const Device& device, uint64_t threads, uint32_t group);
+/// Enough work groups, which are rows, for `threads`, spread over y where x alone cannot hold them.
+void dispatch(Commands cmd, const Device& device, const Pipeline& pipeline, uint64_t threads);
+/// A thread for each pixel of a picture, in work groups that are rectangles.
+void dispatch_over(Commands cmd, const Pipeline& pipeline, uint32_t width, uint32_t height);
 
 }  // namespace chandelier::gpu

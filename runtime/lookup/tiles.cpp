@@ -11,12 +11,7 @@
 namespace chandelier {
 
 TilePipeline make_tile_pipeline(const gpu::Device& device) {
-  constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  return {gpu::make_compute_pipeline(device,
-                                     {.bindings = {buffer, buffer, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, buffer},
-                                      .push_bytes = sizeof(frame::TileConstants)},
-                                     tiles_comp),
-          make_texel_sampler(device)};
+  return {gpu::make_compute_pipeline(device, tiles_comp), make_texel_sampler(device)};
 }
 
 void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, gpu::Retired& retired,
@@ -38,8 +33,10 @@ void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height,
 void record_tiles(gpu::Commands cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,
                   size_t light_count, const Targets& targets, const TileLists& lists) {
   gpu::bind(cmd, tiles.pipeline,
-            {gpu::storage(view), gpu::storage(lights), gpu::sampled(targets.depth.view, tiles.texel_sampler),
-             gpu::storage(lists.words)});
+            {{"View", gpu::storage(view)},
+             {"Lights", gpu::storage(lights)},
+             {"depth_image", gpu::sampled(targets.depth.view, tiles.texel_sampler)},
+             {"TileWords", gpu::storage(lists.words)}});
   gpu::push_constants(
       cmd, tiles.pipeline,
       frame::TileConstants{.light_count = static_cast<uint32_t>(light_count), .words_per_tile = lists.words_per_tile});

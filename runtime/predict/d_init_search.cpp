@@ -12,6 +12,13 @@ namespace {
 
 constexpr float least_d_init_m = 1e-3f;
 
+// What a recipe may have at most.
+float most_d_init_m() {
+  for (const Setting& setting : recipe_settings())
+    if (setting.name == "d_init_m") return static_cast<float>(setting.typed_most);
+  throw std::logic_error("a recipe has no d_init_m");
+}
+
 // How finely d_init is looked through: an error takes much longer to tell than a number of maps.
 struct Effort {
   int ladder_values;
@@ -23,7 +30,7 @@ constexpr Effort for_error{32, 4};
 // 0, and d_init up to where every light is within d_min of every other, evenly in its logarithm.
 std::vector<float> ladder(float farthest_m, const Effort& effort) {
   std::vector<float> values{0.0f};
-  const float top = std::max(2.0f * farthest_m, 2.0f * least_d_init_m);
+  const float top = std::clamp(2.0f * farthest_m, 2.0f * least_d_init_m, most_d_init_m());
   for (int i = 0; i < effort.ladder_values; ++i)
     values.push_back(least_d_init_m * std::pow(top / least_d_init_m,
                                                static_cast<float>(i) / static_cast<float>(effort.ladder_values - 1)));

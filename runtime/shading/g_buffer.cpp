@@ -35,11 +35,9 @@ void begin_pass(gpu::Commands cmd, const Targets& targets) {
 }  // namespace
 
 gpu::Pipeline make_g_buffer_pipeline(const gpu::Device& device, const GpuScene& scene) {
-  const gpu::LayoutInfo layout{
-      std::vector<VkDescriptorType>(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {scene.material_layout}};
-  return gpu::make_graphics_pipeline(device, {.layout = layout,
-                                              .vertex = g_buffer_vert,
-                                              .fragment = g_buffer_frag,
+  return gpu::make_graphics_pipeline(device, {.vertex = g_buffer_vert,
+                                              .fragment = &g_buffer_frag,
+                                              .more_sets = {scene.material_layout},
                                               .streams = position_and_attribute_streams(),
                                               .colors = {VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32G32B32A32_SFLOAT},
                                               .depth = VK_FORMAT_D32_SFLOAT});
@@ -56,8 +54,11 @@ void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const Gpu
   cmd->vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
   cmd->vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
   gpu::bind(cmd, pipeline,
-            {gpu::storage(view), gpu::storage(lists.draws), gpu::storage(scene.instances),
-             gpu::storage(scene.materials), gpu::storage(scene.uv_transforms)});
+            {{"Views", gpu::storage(view)},
+             {"Draws", gpu::storage(lists.draws)},
+             {"Instances", gpu::storage(scene.instances)},
+             {"Materials", gpu::storage(scene.materials)},
+             {"UvTransforms", gpu::storage(scene.uv_transforms)}});
   for (const DrawList& list : lists.by_material) {
     cmd->vkCmdSetCullMode(cmd, scene.double_sided[list.material] ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     cmd->vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 1, 1,

@@ -33,15 +33,8 @@ const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pip
   const std::array<uint32_t, 5> key{static_cast<uint32_t>(shader), answers[0], answers[1], answers[2], answers[3]};
   const auto found = pipelines.made.find(key);
   if (found != pipelines.made.end()) return found->second;
-  constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  constexpr auto image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-  const gpu::LayoutInfo layout{.bindings = {buffer, buffer, buffer, buffer, image, image, image, image,
-                                            VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, buffer, buffer, image, image},
-                               .push_bytes = sizeof(frame::ShadeConstants)};
-  const std::span<const uint32_t> spirv =
-      shader == Shader::visibility ? std::span<const uint32_t>(visibility_comp) : std::span<const uint32_t>(shade_comp);
-  return pipelines.made
-      .emplace(key, gpu::make_compute_pipeline(device, layout, spirv, {answers.begin(), answers.end()}))
+  const gpu::Shader& code = shader == Shader::visibility ? visibility_comp : shade_comp;
+  return pipelines.made.emplace(key, gpu::make_compute_pipeline(device, code, {answers.begin(), answers.end()}))
       .first->second;
 }
 
@@ -52,20 +45,26 @@ void record_over_picture(gpu::Commands cmd, const gpu::Device& device, ShadePipe
   // Every binding has to be something, read or not.
   const gpu::Buffer& tile_words = recipe.lookup == Lookup::tiles ? input.tiles.words : input.lights;
   const gpu::Buffer& visibility = recipe.deliver == Deliver::textures ? input.visibility : input.lights;
-  gpu::bind(
-      cmd, pipeline,
-      {gpu::storage(input.view), gpu::storage(input.lights), gpu::storage(input.maps), gpu::storage(input.views),
-       gpu::sampled(targets.surface.view, pipelines.texel_sampler),
-       gpu::sampled(targets.depth.view, pipelines.texel_sampler), gpu::sampled(store.cubes, pipelines.linear_compare),
-       gpu::sampled(store.depth.view, pipelines.linear_compare), gpu::storage_image(targets.radiance),
-       gpu::storage(tile_words), gpu::storage(visibility), gpu::sampled(store.cubes, pipelines.nearest_depth),
-       gpu::sampled(store.depth.view, pipelines.nearest_depth)});
+  gpu::bind(cmd, pipeline,
+            {{"View", gpu::storage(input.view)},
+             {"Lights", gpu::storage(input.lights)},
+             {"Maps", gpu::storage(input.maps)},
+             {"Views", gpu::storage(input.views)},
+             {"surface_image", gpu::sampled(targets.surface.view, pipelines.texel_sampler)},
+             {"depth_image", gpu::sampled(targets.depth.view, pipelines.texel_sampler)},
+             {"cubes", gpu::sampled(store.cubes, pipelines.linear_compare)},
+             {"layers", gpu::sampled(store.depth.view, pipelines.linear_compare)},
+             {"radiance_image", gpu::storage_image(targets.radiance)},
+             {"TileWords", gpu::storage(tile_words)},
+             {"Visibility", gpu::storage(visibility)},
+             {"cube_depths", gpu::sampled(store.cubes, pipelines.nearest_depth)},
+             {"layer_depths", gpu::sampled(store.depth.view, pipelines.nearest_depth)}});
   gpu::push_constants(cmd, pipeline,
                       frame::ShadeConstants{.first_light = input.first_light,
                                             .light_end = input.first_light + input.light_count,
                                             .tiles_x = input.tiles.tiles_x,
                                             .words_per_tile = input.tiles.words_per_tile});
-  cmd->vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
+  gpu::dispatch_over(cmd, pipeline, targets.width, targets.height);
 }
 
 }  // namespace

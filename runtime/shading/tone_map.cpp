@@ -23,12 +23,8 @@ void computed_before_compute(gpu::Commands cmd) {
 }  // namespace
 
 TonePipelines make_tone_pipelines(const gpu::Device& device) {
-  constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  constexpr auto image = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-  const gpu::LayoutInfo exposure{.bindings = {image, buffer}, .push_bytes = sizeof(frame::ToneConstants)};
-  return {gpu::make_compute_pipeline(device, exposure, exposure_comp, {0}),
-          gpu::make_compute_pipeline(device, exposure, exposure_comp, {1}),
-          gpu::make_compute_pipeline(device, {.bindings = {image, buffer, image}}, tone_map_comp)};
+  return {gpu::make_compute_pipeline(device, exposure_comp, {0}),
+          gpu::make_compute_pipeline(device, exposure_comp, {1}), gpu::make_compute_pipeline(device, tone_map_comp)};
 }
 
 gpu::Buffer make_luminance_sums(const gpu::Device& device, uint32_t width, uint32_t height) {
@@ -43,18 +39,22 @@ void record_tone_map(gpu::Commands cmd, const TonePipelines& pipelines, std::opt
   const frame::ToneConstants constants{
       .exposure_ev = exposure_ev.value_or(0.0f), .automatic = exposure_ev ? 0u : 1u, .group_count = columns * rows};
   gpu::image_barrier(cmd, targets.radiance, use::storage, use::storage);
-  gpu::bind(cmd, pipelines.sum, {gpu::storage_image(targets.radiance), gpu::storage(sums)});
+  gpu::bind(cmd, pipelines.sum,
+            {{"radiance_image", gpu::storage_image(targets.radiance)}, {"Sums", gpu::storage(sums)}});
   gpu::push_constants(cmd, pipelines.sum, constants);
   cmd->vkCmdDispatch(cmd, columns, rows, 1);
   computed_before_compute(cmd);
-  gpu::bind(cmd, pipelines.expose, {gpu::storage_image(targets.radiance), gpu::storage(sums)});
+  gpu::bind(cmd, pipelines.expose,
+            {{"radiance_image", gpu::storage_image(targets.radiance)}, {"Sums", gpu::storage(sums)}});
   gpu::push_constants(cmd, pipelines.expose, constants);
   cmd->vkCmdDispatch(cmd, 1, 1, 1);
   computed_before_compute(cmd);
   gpu::image_barrier(cmd, targets.shown, use::nothing, use::storage);
   gpu::bind(cmd, pipelines.tone_map,
-            {gpu::storage_image(targets.radiance), gpu::storage(sums), gpu::storage_image(targets.shown)});
-  cmd->vkCmdDispatch(cmd, (targets.width + 7) / 8, (targets.height + 7) / 8, 1);
+            {{"radiance_image", gpu::storage_image(targets.radiance)},
+             {"Sums", gpu::storage(sums)},
+             {"shown_image", gpu::storage_image(targets.shown)}});
+  gpu::dispatch_over(cmd, pipelines.tone_map, targets.width, targets.height);
   gpu::image_barrier(cmd, targets.shown, use::storage, use::copied);
 }
 

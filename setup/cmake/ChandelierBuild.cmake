@@ -33,23 +33,31 @@ function(chandelier_compile_quickly)
 endfunction()
 
 # chandelier_shaders(TARGET file…): compiles each GLSL file to SPIR-V with glslangValidator and embeds it, so that
-# #include "shaders/NAME.h" gives `constexpr uint32_t NAME_EXT[]` (dots become underscores).
+# #include "shaders/NAME_EXT.h" gives `constexpr chandelier::gpu::Shader NAME_EXT`, which tells what is to be bound to it.
 function(chandelier_shaders target)
   find_program(GLSLANG glslangValidator REQUIRED)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/shaders)
+  set(embed ${CMAKE_SOURCE_DIR}/setup/cmake/embed_shader.py)
   foreach(source ${ARGN})
     get_filename_component(name ${source} NAME)
     get_filename_component(path ${source} ABSOLUTE)
     string(REPLACE "." "_" symbol ${name})
     set(header ${out}/${symbol}.h)
+    set(spirv ${out}/${symbol}.spv)
     add_custom_command(
-      OUTPUT ${header}
+      OUTPUT ${spirv}
       COMMAND ${CMAKE_COMMAND} -E make_directory ${out}
       COMMAND ${GLSLANG} --quiet -V --target-env vulkan1.3 -I${CMAKE_SOURCE_DIR}/runtime -I${CMAKE_BINARY_DIR}/generated
-              --depfile ${header}.d --vn ${symbol} -o ${header} ${path}
+              --depfile ${spirv}.d -o ${spirv} ${path}
       DEPENDS ${path} chandelier_generated
-      DEPFILE ${header}.d
+      DEPFILE ${spirv}.d
       COMMENT "Shader ${name}"
+      VERBATIM)
+    add_custom_command(
+      OUTPUT ${header}
+      COMMAND ${Python3_EXECUTABLE} -B ${embed} ${spirv} ${symbol} ${header}
+      DEPENDS ${spirv} ${embed}
+      COMMENT "Embedding shader ${name}"
       VERBATIM)
     target_sources(${target} PRIVATE ${header})
   endforeach()

@@ -153,7 +153,7 @@ class CubeLookupTest : public GpuTest {
     const gpu::Buffer views = upload(maps.views);
     const gpu::Buffer counters = upload(std::vector<frame::CullCounters>(1));
     gpu::run_once(device(), [&](gpu::Commands cmd) {
-      record_cull(cmd, device(), cull.light_frustum, scene,
+      record_cull(cmd, device(), cull[Cull::light_frustum], scene,
                   {.views = views,
                    .counters = counters,
                    .first_view = 0,
@@ -167,10 +167,7 @@ class CubeLookupTest : public GpuTest {
   }
 
   std::vector<float> answers(const Maps& maps, const std::vector<Question>& questions) {
-    constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    constexpr auto image = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    const auto pipeline = gpu::make_compute_pipeline(
-        device(), {.bindings = {buffer, buffer, buffer, buffer, buffer, image}, .more_sets = {}}, lookup_comp);
+    const auto pipeline = gpu::make_compute_pipeline(device(), lookup_comp);
     const auto nearest = gpu::make_sampler(device(), {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO});
     const gpu::Buffer view =
         upload(std::vector<frame::ViewConstants>{{.face_size_px = static_cast<float>(maps.store.face_size_px)}});
@@ -179,9 +176,13 @@ class CubeLookupTest : public GpuTest {
         gpu::make_buffer(device(), questions.size() * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::readback);
     gpu::run_once(device(), [&](gpu::Commands cmd) {
       gpu::bind(cmd, pipeline,
-                {gpu::storage(view), gpu::storage(map_buffer), gpu::storage(views), gpu::storage(asked),
-                 gpu::storage(out), gpu::sampled(maps.store.depth.view, nearest)});
-      gpu::dispatch(cmd, device(), questions.size(), 64);
+                {{"View", gpu::storage(view)},
+                 {"Maps", gpu::storage(map_buffer)},
+                 {"Views", gpu::storage(views)},
+                 {"Questions", gpu::storage(asked)},
+                 {"Answers", gpu::storage(out)},
+                 {"layer_depths", gpu::sampled(maps.store.depth.view, nearest)}});
+      gpu::dispatch(cmd, device(), pipeline, questions.size());
       gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                           VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
     });

@@ -29,7 +29,7 @@ std::vector<uint32_t> distinct_words(size_t count) {
 
 class EchoTest : public GpuTest {
  protected:
-  void expect_echo(const char* name, uint32_t record_bytes, std::span<const uint32_t> spirv) {
+  void expect_echo(const char* name, uint32_t record_bytes, const gpu::Shader& shader) {
     SCOPED_TRACE(name);
     ASSERT_EQ(record_bytes % 4, 0u);
     const auto before = distinct_words(size_t{record_count} * record_bytes / 4);
@@ -38,11 +38,10 @@ class EchoTest : public GpuTest {
     const gpu::Buffer out = gpu::make_buffer(device(), size_t{record_count} * record_bytes,
                                              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::readback);
     std::memset(out.mapped, 0xEE, out.size_bytes);
-    constexpr auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    const auto pipeline = gpu::make_compute_pipeline(device(), {.bindings = {buffer, buffer}, .more_sets = {}}, spirv);
+    const auto pipeline = gpu::make_compute_pipeline(device(), shader);
     gpu::run_once(device(), [&](gpu::Commands cmd) {
-      gpu::bind(cmd, pipeline, {gpu::storage(in), gpu::storage(out)});
-      gpu::dispatch(cmd, device(), in.size_bytes / record_bytes, 64);
+      gpu::bind(cmd, pipeline, {{"Before", gpu::storage(in)}, {"After", gpu::storage(out)}});
+      gpu::dispatch(cmd, device(), pipeline, in.size_bytes / record_bytes);
       gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                           VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
     });

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cull stage's counters without a device: the arithmetic of cull_none.comp and cull_light_frustum.comp on the CPU.
+// The cull stage's counters without a device: cull_ANSWER.h does on the CPU what cull_ANSWER.comp does.
 #pragma once
 
 #include <span>
 
-#include "frame/recipe.h"
 #include "frame_schema.h"
+#include "recipe_schema.h"
 #include "world/world.h"
 
 namespace chandelier {
@@ -15,6 +15,7 @@ struct CasterCounts {
   uint64_t draws = 0;
   uint64_t triangles = 0;
 };
+/// Throws std::invalid_argument where the answer is not known.
 CasterCounts count_casters(Cull cull, std::span<const frame::ShadowView> views, const World& world);
 
 }  // namespace chandelier

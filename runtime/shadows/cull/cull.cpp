@@ -5,8 +5,7 @@
 
 #include <algorithm>
 
-#include "shaders/cull_light_frustum_comp.h"
-#include "shaders/cull_none_comp.h"
+#include "stages/cull_shaders.h"
 
 namespace chandelier {
 
@@ -35,10 +34,14 @@ std::vector<DrawList> lists_for_shadows(const GpuScene& scene) {
 }  // namespace
 
 CullPipelines make_cull_pipelines(const gpu::Device& device) {
-  const gpu::LayoutInfo layout{.bindings = std::vector<VkDescriptorType>(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                               .push_bytes = sizeof(frame::CullConstants)};
-  return {gpu::make_compute_pipeline(device, layout, cull_none_comp),
-          gpu::make_compute_pipeline(device, layout, cull_light_frustum_comp)};
+  std::vector<gpu::Pipeline> pipelines;
+  for (const gpu::Shader* shader : cull_shaders) pipelines.push_back(gpu::make_compute_pipeline(device, *shader));
+  return CullPipelines(std::move(pipelines));
+}
+
+const gpu::Pipeline& CullPipelines::operator[](Cull answer) const {
+  if (static_cast<size_t>(answer) >= pipelines_.size()) refuse_answer(answer);
+  return pipelines_[static_cast<size_t>(answer)];
 }
 
 DrawLists make_draw_lists(const gpu::Device& device, const GpuScene& scene, uint64_t draws) {
@@ -72,11 +75,16 @@ void record_cull(gpu::Commands cmd, const gpu::Device& device, const gpu::Pipeli
                                        .keep_order = input.keep_order,
                                        .casters_only = input.casters_only};
   gpu::bind(cmd, pipeline,
-            {gpu::storage(input.views), gpu::storage(scene.batch_instances), gpu::storage(scene.batches),
-             gpu::storage(scene.material_runs), gpu::storage(scene.run_of_batch_instance), gpu::storage(lists.draws),
-             gpu::storage(lists.counts), gpu::storage(input.counters)});
+            {{"Views", gpu::storage(input.views)},
+             {"BatchInstances", gpu::storage(scene.batch_instances)},
+             {"Batches", gpu::storage(scene.batches)},
+             {"MaterialRuns", gpu::storage(scene.material_runs)},
+             {"RunOfBatchInstance", gpu::storage(scene.run_of_batch_instance)},
+             {"Draws", gpu::storage(lists.draws)},
+             {"Counts", gpu::storage(lists.counts)},
+             {"Counters", gpu::storage(input.counters)}});
   gpu::push_constants(cmd, pipeline, constants);
-  gpu::dispatch(cmd, device, uint64_t{scene.batch_instance_count} * input.view_count, frame::cull_group_size);
+  gpu::dispatch(cmd, device, pipeline, uint64_t{scene.batch_instance_count} * input.view_count);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
                       VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT);

@@ -2,15 +2,21 @@
 // The cull stage: which batches go into which views. The camera's g-buffer is culled by the same code.
 #pragma once
 
-#include "frame/recipe.h"
 #include "frame_schema.h"
+#include "gpu/pipelines.h"
+#include "recipe_schema.h"
 #include "scene/gpu_scene.h"
 
 namespace chandelier {
 
-struct CullPipelines {
-  gpu::Pipeline none;
-  gpu::Pipeline light_frustum;
+class CullPipelines {
+ public:
+  explicit CullPipelines(std::vector<gpu::Pipeline> pipelines) : pipelines_(std::move(pipelines)) {}
+  /// Throws std::invalid_argument where the answer is not known.
+  const gpu::Pipeline& operator[](Cull answer) const;
+
+ private:
+  std::vector<gpu::Pipeline> pipelines_;  // by Cull
 };
 CullPipelines make_cull_pipelines(const gpu::Device& device);
 

@@ -33,15 +33,11 @@ void begin_pass(gpu::Commands cmd, const CubeArray& store, uint32_t cubes) {
 CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene& scene) {
   std::vector<gpu::VertexStream> with_uv = position_and_attribute_streams();
   std::erase_if(with_uv[1].attributes, [](const auto& attribute) { return attribute.location < 3; });
-  const gpu::LayoutInfo opaque{std::vector<VkDescriptorType>(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {}};
-  const gpu::LayoutInfo masked{
-      std::vector<VkDescriptorType>(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 0, {scene.material_layout}};
   return {gpu::make_graphics_pipeline(
-              device,
-              {.layout = opaque, .vertex = caster_vert, .streams = position_stream(), .depth = VK_FORMAT_D32_SFLOAT}),
-          gpu::make_graphics_pipeline(device, {.layout = masked,
-                                               .vertex = caster_masked_vert,
-                                               .fragment = caster_masked_frag,
+              device, {.vertex = caster_vert, .streams = position_stream(), .depth = VK_FORMAT_D32_SFLOAT}),
+          gpu::make_graphics_pipeline(device, {.vertex = caster_masked_vert,
+                                               .fragment = &caster_masked_frag,
+                                               .more_sets = {scene.material_layout},
                                                .streams = with_uv,
                                                .depth = VK_FORMAT_D32_SFLOAT})};
 }
@@ -56,12 +52,18 @@ void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const G
   cmd->vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
 
   const std::vector<DrawList>& draw_lists = lists.for_shadows;
-  gpu::bind(cmd, pipelines.opaque, {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances)});
+  gpu::bind(cmd, pipelines.opaque,
+            {{"Views", gpu::storage(views)},
+             {"Draws", gpu::storage(lists.draws)},
+             {"Instances", gpu::storage(scene.instances)}});
   draw_list(cmd, lists, draw_lists[0], view_count);
   if (draw_lists.size() > 1)
     gpu::bind(cmd, pipelines.masked,
-              {gpu::storage(views), gpu::storage(lists.draws), gpu::storage(scene.instances),
-               gpu::storage(scene.materials), gpu::storage(scene.uv_transforms)});
+              {{"Views", gpu::storage(views)},
+               {"Draws", gpu::storage(lists.draws)},
+               {"Instances", gpu::storage(scene.instances)},
+               {"Materials", gpu::storage(scene.materials)},
+               {"UvTransforms", gpu::storage(scene.uv_transforms)}});
   for (size_t i = 1; i < draw_lists.size(); ++i) {
     cmd->vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.masked.layout, 1, 1,
                                  &scene.material_sets[draw_lists[i].material], 0, nullptr);
