@@ -153,6 +153,14 @@ TEST_F(RecipesTest, WhatCannotBeRenderedIsRefused) {
   EXPECT_NO_THROW(renderer.draw(settings));
   settings.recipe = recipe_with(Select::light_clusters, Filter::rays, 0.5f);
   EXPECT_THROW(renderer.draw(settings), std::invalid_argument);
+  settings.recipe = recipe_with(Select::per_light, Filter::hard, 0);
+  settings.recipe.cull = static_cast<Cull>(77);
+  try {
+    renderer.draw(settings);
+    FAIL() << "a renderer takes an answer that it does not know";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "cull: there is no answer of number 77");
+  }
   settings.recipe = presets().back().recipe;
   settings.visibility = nullptr;
   EXPECT_THROW(renderer.draw(settings), std::invalid_argument);

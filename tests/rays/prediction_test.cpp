@@ -6,6 +6,7 @@
 
 #include "bake/bake.h"
 #include "predict/d_init_search.h"
+#include "shadows/cull/count_casters.h"
 
 namespace chandelier {
 namespace {
@@ -385,6 +386,24 @@ TEST(Prediction, ARadiusThatItsAuthorGaveIsNoError) {
   settings.recipe.select = Select::per_light;
   EXPECT_EQ(predictor.expected_rmse(settings, predictor.plan(settings).plan), hard);
   EXPECT_GT(shared, 2 * hard);
+}
+
+TEST(Prediction, RefusesAnswersThatItDoesNotKnow) {
+  const pack::Contents pack = lights_in_a_box(4, 5);
+  const pack::View view = pack::view_of(pack);
+  Predictor predictor(view);
+  for (size_t stage = 0; stage < stage_choices().size(); ++stage) {
+    RenderSettings settings;
+    with_answer(settings.recipe, stage,
+                [](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(77); });
+    try {
+      predictor.predict(settings);
+      FAIL() << "a predictor takes an answer that it does not know";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_EQ(error.what(), std::string(stage_choices()[stage].stage) + ": there is no answer of number 77");
+    }
+  }
+  EXPECT_THROW(count_casters(static_cast<Cull>(77), {}, view), std::invalid_argument);
 }
 
 TEST(Prediction, CountsLightsMapsAndViews) {
