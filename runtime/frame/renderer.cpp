@@ -230,7 +230,8 @@ void Renderer::Impl::record_light(const Recording& frame, const Round& round) {
                    .visibility = resources.visibility,
                    .tiles = resources.tiles,
                    .first_light = round.first_light,
-                   .light_count = round.light_count};
+                   .light_count = round.light_count,
+                   .projections = projections_of(plan.list.maps)};
   if (plan.recipe.deliver == Deliver::textures && plan.recipe.filter != Filter::rays) {
     const Timed timed(frame, "deliver");
     record_visibility(cmd, device, shade, plan.recipe, input, resources.store, resources.targets);

@@ -13,6 +13,7 @@ layout(constant_id = 0) const uint filter_answer = 0u;
 layout(constant_id = 1) const uint shade_answer = 0u;
 layout(constant_id = 2) const uint lookup_answer = 0u;
 layout(constant_id = 3) const uint deliver_answer = 0u;
+layout(constant_id = 4) const uint projections = 3u;  // that the frame's maps have: PROJECTION_CUBE | PROJECTION_CASCADES
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, scalar) readonly buffer View { ViewConstants view; };

@@ -27,10 +27,12 @@ gpu::Owned<VkSampler> shadow_sampler(const gpu::Device& device, VkFilter filter,
 
 // Made when first needed: few of the combinations are ever drawn with.
 const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
-                                  const Recipe& recipe) {
-  const std::array<uint32_t, 4> answers{static_cast<uint32_t>(recipe.filter), static_cast<uint32_t>(recipe.shade),
-                                        static_cast<uint32_t>(recipe.lookup), static_cast<uint32_t>(recipe.deliver)};
-  const std::array<uint32_t, 5> key{static_cast<uint32_t>(shader), answers[0], answers[1], answers[2], answers[3]};
+                                  const Recipe& recipe, uint32_t projections) {
+  const std::array<uint32_t, 5> answers{static_cast<uint32_t>(recipe.filter), static_cast<uint32_t>(recipe.shade),
+                                        static_cast<uint32_t>(recipe.lookup), static_cast<uint32_t>(recipe.deliver),
+                                        projections};
+  const std::array<uint32_t, 6> key{
+      static_cast<uint32_t>(shader), answers[0], answers[1], answers[2], answers[3], answers[4]};
   const auto found = pipelines.made.find(key);
   if (found != pipelines.made.end()) return found->second;
   const gpu::Shader& code = shader == Shader::visibility ? visibility_comp : shade_comp;
@@ -41,7 +43,7 @@ const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pip
 void record_over_picture(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
                          const Recipe& recipe, const ShadeInput& input, const CubeArray& store,
                          const Targets& targets) {
-  const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, shader, recipe);
+  const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, shader, recipe, input.projections);
   // Every binding has to be something, read or not.
   const gpu::Buffer& tile_words = recipe.lookup == Lookup::tiles ? input.tiles.words : input.lights;
   const gpu::Buffer& visibility = recipe.deliver == Deliver::textures ? input.visibility : input.lights;
@@ -68,6 +70,12 @@ void record_over_picture(gpu::Commands cmd, const gpu::Device& device, ShadePipe
 }
 
 }  // namespace
+
+uint32_t projections_of(std::span<const frame::ShadowMap> maps) {
+  uint32_t projections = 0;
+  for (const frame::ShadowMap& map : maps) projections |= map.is_directional ? projection_cascades : projection_cube;
+  return projections ? projections : projection_cube;  // one variant less
+}
 
 ShadePipelines make_shade_pipelines(const gpu::Device& device) {
   ShadePipelines pipelines;

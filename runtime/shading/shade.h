@@ -5,6 +5,7 @@
 
 #include <array>
 #include <map>
+#include <span>
 
 #include "frame/recipe.h"
 #include "frame/targets.h"
@@ -15,12 +16,16 @@
 namespace chandelier {
 
 struct ShadePipelines {
-  std::map<std::array<uint32_t, 5>, gpu::Pipeline> made;  // by shader and the answers it is specialized for
+  std::map<std::array<uint32_t, 6>, gpu::Pipeline> made;  // by shader and the answers it is specialized for
   gpu::Owned<VkSampler> texel_sampler;                    // for targets
   gpu::Owned<VkSampler> linear_compare;                   // of depths: filters pcf and pcss
   gpu::Owned<VkSampler> nearest_depth;                    // depths as they are, for all filters
 };
 ShadePipelines make_shade_pipelines(const gpu::Device& device);
+
+/// Which projections shadow maps have, a bit for each (shadows/filter/shadow_lookup.glsl).
+enum Projections : uint32_t { projection_cube = 1, projection_cascades = 2 };
+uint32_t projections_of(std::span<const frame::ShadowMap> maps);
 
 struct ShadeInput {
   const gpu::Buffer& view;        // frame ViewConstants
@@ -31,6 +36,7 @@ struct ShadeInput {
   const TileLists& tiles;         // unused where lookup is all
   uint32_t first_light;
   uint32_t light_count;
+  uint32_t projections;  // of the frame's maps
 };
 /// Filters the round's maps into `input.visibility`, which shading may read afterwards.
 void record_visibility(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,

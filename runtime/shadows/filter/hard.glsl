@@ -23,7 +23,7 @@ float nearest_lit(Spot spot, vec2 uv, float layer) {
 }
 
 float hard_visibility(ShadowMap map, vec3 p, vec3 n) {
-  if (map.is_directional != 0u) {
+  if (has_cascades(map)) {
     ShadowView cascade = views[cascade_at(map, p)];
     vec3 clip = to_cascade(cascade, vec4(p, 1.0));
     return nearest_lit(cascade_spot(cascade, clip, n), clip.xy, float(cascade.layer));

@@ -114,6 +114,6 @@ float cascade_pcss(ShadowMap map, ShadowView cascade, Receiver r) {
 }
 
 float pcss_visibility(ShadowMap map, Receiver r) {
-  if (map.is_directional != 0u) return cascade_pcss(map, views[cascade_at(map, r.p)], r);
+  if (has_cascades(map)) return cascade_pcss(map, views[cascade_at(map, r.p)], r);
   return cube_pcss(map, r);
 }

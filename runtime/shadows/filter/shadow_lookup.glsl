@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all filters need. Expects in scope: `ShadowView views[]` and `ViewConstants view`; the soft filters also
+// What all filters need. Expects in scope: `ShadowView views[]`, `ViewConstants view` and the constant `projections`; the soft filters also
 // `samplerCubeArrayShadow cubes` and `sampler2DArrayShadow layers`, where a comparison passes if the reference is greater or
 // equal: depth is reversed. Points come as positions from the camera's eye, along the world's axes:
 // what is seen is exact there, however far from the world's origin.
@@ -8,6 +8,15 @@
 
 // Float rounding of depth on its way through matrix, rasterizer and sampler, relative.
 const float DEPTH_ROUNDING = 1e-4;
+
+// Which projections a frame's maps have, a bit for each (shading/shade.h). A shader is specialized for them: a driver that
+// executes both sides of a branch would pay for the projection that no map has.
+const uint PROJECTION_CUBE = 1u, PROJECTION_CASCADES = 2u;
+
+bool has_cascades(ShadowMap map) {
+  if ((projections & PROJECTION_CASCADES) == 0u) return false;
+  return (projections & PROJECTION_CUBE) == 0u || map.is_directional != 0u;
+}
 
 // A point as the centre of a map sees it.
 vec3 from_center(ShadowMap map, vec3 p) { return p + (view.eye_ws - map.center_ws); }
