@@ -40,7 +40,9 @@ float delivered_visibility(ShadowMap map, Receiver receiver, uvec2 pixel) {
   return place != NONE && in_range(map, receiver.p) ? float(uint(visibility_bytes[place])) / 255.0 : 0.0;
 }
 
-// Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked.
+// Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked. It also
+// executes what stands behind an `if` that no thread takes, which is why the inner loop goes on over maps of which nothing
+// reaches these pixels: visibility is read once for each map that does.
 vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
   Reflector r = reflector(s, normalize(-p));
   if (shade_answer == SHADE_LAMBERT) r.diffuse = s.base_color / PI;
@@ -48,14 +50,20 @@ vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
   vec3 sum = vec3(0.0);
   uint light = next_light(round.first_light);
   if (light < round.light_end) do {
-    uint number = lights[light].map;  // NONE: of this light and all after it
-    uint map_end = number == NONE ? round.light_end : maps[number].first_light + maps[number].light_count;
-    vec3 of_map = vec3(0.0);
+    uint number;
+    vec3 of_map;
+    bool reached;
     do {
-      of_map += unshadowed(light, r, s.geometric_normal, p);
-      light = next_light(light + 1u);
-    } while (light < map_end);
-    if (number != NONE && subgroupAny(largest(of_map) > 0.0)) of_map *= delivered_visibility(maps[number], receiver, pixel);
+      number = lights[light].map;  // NONE: of this light and all after it
+      uint map_end = number == NONE ? round.light_end : maps[number].first_light + maps[number].light_count;
+      of_map = vec3(0.0);
+      do {
+        of_map += unshadowed(light, r, s.geometric_normal, p);
+        light = next_light(light + 1u);
+      } while (light < map_end);
+      reached = number == NONE || subgroupAny(largest(of_map) > 0.0);
+    } while (!reached && light < round.light_end);
+    if (number != NONE && reached) of_map *= delivered_visibility(maps[number], receiver, pixel);
     sum += of_map;
   } while (light < round.light_end);
   return sum;

@@ -19,6 +19,7 @@ layout(binding = 3, scalar) readonly buffer Questions { Question questions[]; };
 layout(binding = 4, scalar) writeonly buffer Answers { float answers[]; };
 layout(binding = 5) uniform sampler2DArray layer_depths;
 
+const uint projections = 3u;  // PROJECTION_CUBE | PROJECTION_CASCADES
 #include "shadows/filter/hard.glsl"
 
 void main() {
