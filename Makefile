@@ -10,7 +10,7 @@ PLAY := $(BUILD)/bin/chandelier-play
 BAKE := $(BUILD)/bin/chandelier-bake
 CPP_FILES := $(shell git ls-files '*.cpp' '*.h' 2>/dev/null)
 
-.PHONY: help setup build demo test test-mesa25 test-blender4 bench bench-baker bench-lightcluster fuzz addon addon-images format portable clean
+.PHONY: help setup build demo test test-mesa25 test-blender4 bench bench-baker bench-lightcluster bench-soft fuzz addon addon-images format portable clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -26,6 +26,7 @@ help:
 	@echo "make bench-lightcluster  the paper's tables and figures with ours beside them, in build/bench/lightcluster/; takes"
 	@echo "                  DEVICE=NAME (else Mesa 25 where it can be had) and OPTIONS='--size 1280x720 --face-size 512"
 	@echo "                  --scenes atrium,cornell --repeats 5', or OPTIONS=--quick to see that it works"
+	@echo "make bench-soft   print what soft shadow maps cost beside the reference's; takes DEVICE and OPTIONS as well"
 	@echo "make fuzz         look for inputs that break the importer, the pack reader or the cache, SECONDS=60 each; what is found is kept"
 	@echo "make portable     build a chandelier-play that needs only glibc and a Vulkan loader, in build/portable/bin/"
 	@echo "make addon-images  make the pictures of blender_addon/README.md anew, in a Blender 3.4 under Xvfb"
@@ -96,6 +97,14 @@ bench-lightcluster:
 	variables="$(if $(DEVICE),,$$(setup/mesa25.sh $(BUILD)/mesa25 || true))"; env $$variables \
 	  $(PYTHON) tests/bench/lightcluster/run.py --programs $(BUILD)/bin --out $(BUILD)/bench/lightcluster --data $(DATA) \
 	  $(if $(DEVICE),--device "$(DEVICE)") $(OPTIONS)
+
+# On the system's own driver first, then on Mesa 25 where it can be had; with DEVICE on that alone.
+bench-soft:
+	@setup/install.sh setup/packages-bench.txt
+	@$(MAKE) --no-print-directory build
+	set -e; soft="$(PYTHON) tests/bench/lightcluster/soft.py --programs $(BUILD)/bin --out $(BUILD)/bench/soft --data $(DATA)"; \
+	  $$soft $(if $(DEVICE),--device "$(DEVICE)") $(OPTIONS); \
+	  $(if $(DEVICE),true,variables="$$(setup/mesa25.sh $(BUILD)/mesa25 || true)"; test -z "$$variables" || env $$variables $$soft $(OPTIONS))
 
 SECONDS := 60
 FUZZ_TARGETS := import pack cache

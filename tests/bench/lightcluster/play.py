@@ -33,7 +33,7 @@ class Player:
         self.folder = Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         self.program = [program, pack]
-        self.view = ["--camera", camera]
+        self.view = ["--camera", camera] if camera else []
         self.device = ["--device", arguments.device] if arguments.device else []
         self.size = ["--size", arguments.size, "--face-size", arguments.face_size]
 

@@ -9,7 +9,6 @@ OUT gets index.html and README.md (the same page), images/, results.json, and wo
 
 import argparse
 import json
-import re
 import sys
 from pathlib import Path
 
@@ -19,12 +18,7 @@ import page
 import paper
 import plots
 import scenes
-
-
-def size(text):
-    if not re.fullmatch(r"[1-9]\d{0,4}x[1-9]\d{0,4}", text):
-        raise argparse.ArgumentTypeError(f"must be WIDTHxHEIGHT ({text})")
-    return text
+from arguments import positive, size
 
 
 def scene_names(text):
@@ -34,12 +28,6 @@ def scene_names(text):
         known = ", ".join(scene.name for scene in scenes.SCENES)
         raise argparse.ArgumentTypeError(f"no such scene: {', '.join(unknown)}; there are {known}")
     return names
-
-
-def positive(text):
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number above 0 ({text})")
-    return int(text)
 
 
 def parse(arguments):

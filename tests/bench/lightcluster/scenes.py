@@ -18,7 +18,7 @@ class Scene:
     paper: str  # the scene of paper.TABLE_1 that it stands for
     d_inits: tuple  # the paper's, metres
     pictures: tuple  # d_inits whose pictures the page shows, as the paper's Figures 7 to 9 do
-    script: str  # in examples/
+    script: str  # in examples/; empty: the data alone
     walk: tuple  # of a moving camera: where it begins and ends, as --path takes them
     data: str = ""  # a glTF of the test data that is baked with it
     counts: tuple = ()  # numbers of clusters for which d_init is searched, since the goals are stated for them
@@ -43,15 +43,17 @@ def by_name(name):
 
 def bake(scene, bake_program, data, folder):
     """The scene's pack in `folder`, made where it is missing or older than what it comes from; None without its test data."""
-    script, rig, pack = EXAMPLES / scene.script, folder / f"{scene.name}.glb", folder / f"{scene.name}.chandelier"
+    scripts = [EXAMPLES / scene.script] if scene.script else []
+    rig, pack = folder / f"{scene.name}.glb", folder / f"{scene.name}.chandelier"
     found = [Path(data) / scene.data] if scene.data else []
     if not all(path.exists() for path in found):
         return None
-    newest = max(path.stat().st_mtime for path in [script, Path(bake_program), *found])
+    newest = max(path.stat().st_mtime for path in [*scripts, Path(bake_program), *found])
     if not pack.exists() or pack.stat().st_mtime < newest:
         folder.mkdir(parents=True, exist_ok=True)
-        run([sys.executable, "-B", script, "-o", rig])
-        run([bake_program, "--quiet", *found, rig, "-o", pack])
+        for script in scripts:
+            run([sys.executable, "-B", script, "-o", rig])
+        run([bake_program, "--quiet", *found, *([rig] if scripts else []), "-o", pack])
     return pack
 
 
