@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the CPU decides before a frame is recorded: lights, shadow maps, their views, and rounds. Needs no device, so
-// that a frame's cost can be told without one.
+// What the CPU decides before a frame is recorded: lights, shadow maps, their views, and the groups of maps that are
+// drawn and shaded together. Needs no device, so that a frame's cost can be predicted without one.
 #pragma once
 
 #include "frame/frame_stats.h"

@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "view/camera.h"
 #include "frame/recipe.h"
 #include "frame/visibility_query.h"
+#include "view/camera.h"
 
 namespace chandelier {
 

@@ -44,14 +44,14 @@ ClusterCounter::ClusterCounter(std::span<const ClusterLight> lights, const Clust
     : settings_(settings),
       fixed_(count_fixed(lights, settings)),
       lights_(in_order(lights, settings)),
-      round_(tree_of(1.0)),
-      narrow_(tree_of(2.0)),
+      omni_(tree_of(1.0)),
+      cones_(tree_of(2.0)),
       covered_(lights_.size()) {}
 
-PointTree ClusterCounter::tree_of(double reach) const {
+PointTree ClusterCounter::tree_of(double factor) const {
   std::vector<PointTree::Point> points;
   for (uint32_t rank = 0; rank < lights_.size(); ++rank)
-    if (lights::reach(lights_[rank]) == reach) points.push_back({lights_[rank].position_ws, rank});
+    if (lights::straight_per_metric(lights_[rank]) == factor) points.push_back({lights_[rank].position_ws, rank});
   return PointTree(std::move(points));
 }
 
@@ -67,8 +67,8 @@ void ClusterCounter::visit_later(uint32_t center, float d_min_m, Visit visit) co
   const auto if_later = [&](uint32_t rank) {
     if (rank > center) visit(rank);
   };
-  round_.visit_near(lights_[center].position_ws, SquaredRadius(d_min_m), if_later);
-  narrow_.visit_near(lights_[center].position_ws, SquaredRadius(2.0 * double{d_min_m}), if_later);
+  omni_.visit_near(lights_[center].position_ws, SquaredRadius(d_min_m), if_later);
+  cones_.visit_near(lights_[center].position_ws, SquaredRadius(2.0 * double{d_min_m}), if_later);
 }
 
 void ClusterCounter::stay_within(float d_init_m) {

@@ -31,7 +31,7 @@ class ClusterCounter {
     float distance_m;  // the metric one, rounded up: within the same floats
   };
 
-  PointTree tree_of(double reach) const;
+  PointTree tree_of(double factor) const;
   float d_min_m(float d_init_m, uint32_t rank) const;
   template <typename Visit>
   void visit_later(uint32_t center, float d_min_m, Visit visit) const;
@@ -41,8 +41,8 @@ class ClusterCounter {
   const ClusterSettings settings_;
   size_t fixed_;                      // clusters that are there with any d_init
   std::vector<ClusterLight> lights_;  // the others', in the order of selection: their ranks
-  PointTree round_;                   // of those that shine all around
-  PointTree narrow_;                  // of the others
+  PointTree omni_;                    // of those that shine all around
+  PointTree cones_;                   // of the others
   std::vector<uint8_t> covered_;      // of each rank: is it within d_min of a centre?
   float largest_d_init_m_ = -1.0f;    // negative: not known
   std::vector<Neighbour> neighbours_;

@@ -32,7 +32,7 @@ inline double straight_distance_m(const glm::vec3& a, const glm::vec3& b) {
 }
 
 /// A light's greatest straight distance over its metric distance from any centre.
-inline double reach(const ClusterLight& light) {
+inline double straight_per_metric(const ClusterLight& light) {
   return light.cone_cos > 0.0f ? 2.0 : 1.0;
 }
 

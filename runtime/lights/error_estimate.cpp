@@ -112,10 +112,10 @@ double estimated_rmse(const LightSamples& samples, std::span<const MapMember> me
   for (size_t i = 0; i < members.size(); ++i) {
     const MapMember& member = members[i];
     if (i == 0 || members[i - 1].center != member.center) std::fill(of_map.begin(), of_map.end(), not_asked);
-    for (const LightSamples::Reach& reach : samples.reach(member.light)) {
-      float& lit = of_map[reach.point];
-      if (lit == not_asked) lit = visibility(samples, member, reach.point, reading);
-      estimate[reach.point] += member.share * lit * reach.radiance;
+    for (const LightSamples::Contribution& contribution : samples.contributions(member.light)) {
+      float& lit = of_map[contribution.point];
+      if (lit == not_asked) lit = visibility(samples, member, contribution.point, reading);
+      estimate[contribution.point] += member.share * lit * contribution.radiance;
     }
   }
   double sum = 0.0;

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include "recipe_schema.h"
 #include "lights/light_samples.h"
+#include "recipe_schema.h"
 
 namespace chandelier {
 

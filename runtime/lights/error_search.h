@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "recipe_schema.h"
 #include "lights/error_selection.h"
 #include "lights/light_samples.h"
+#include "recipe_schema.h"
 #include "view/camera.h"
 
 namespace chandelier {
@@ -75,8 +75,8 @@ class ErrorSearch {
   WorldKey key_;
   SampledView view_;
   DynamicLights dynamic_lights_ = DynamicLights::cluster;  // the ladder's
-  std::optional<LightSamples> judge_;                                      // for estimates
-  std::optional<LightSamples> samples_;                                    // other points, for the search
+  std::optional<LightSamples> judge_;                      // for estimates
+  std::optional<LightSamples> samples_;                    // other points, for the search
   std::optional<ErrorLadder> ladder_;
 };
 

@@ -23,8 +23,8 @@ class ErrorLadder {
   /// Samples must outlive this. Lights that keep a map of their own (lights::has_own_center) lend it to none.
   /// `group_centers`: of each light the one whose map its group shares, of a light in no group anything; needed where
   /// there are groups. Throws SearchStopped.
-  ErrorLadder(const LightSamples& samples, DynamicLights dynamic_lights,
-              std::span<const uint32_t> group_centers = {}, const std::stop_token& stop = {});
+  ErrorLadder(const LightSamples& samples, DynamicLights dynamic_lights, std::span<const uint32_t> group_centers = {},
+              const std::stop_token& stop = {});
 
   uint32_t fewest_maps() const { return rungs_.back().maps; }
   /// The best found with at most `maps` (or fewest_maps(), where that is more), by the error of hard shadows with each

@@ -35,8 +35,8 @@ class Selection {
         blocked_(blocked),
         order_(order_of(
             [&](uint32_t light) { return lights[light].group == 0 && !has_own_center(lights[light], settings); })),
-        round_(tree_of([&](uint32_t light) { return reach(lights_[light]) == 1.0; })),
-        narrow_(tree_of([&](uint32_t light) { return reach(lights_[light]) > 1.0; })),
+        omni_(tree_of([&](uint32_t light) { return straight_per_metric(lights_[light]) == 1.0; })),
+        cones_(tree_of([&](uint32_t light) { return straight_per_metric(lights_[light]) > 1.0; })),
         d_min_(lights.size()),
         rank_(lights.size(), none),
         nearest_(lights.size()) {}
@@ -65,7 +65,7 @@ class Selection {
   template <typename Which>
   PointTree tree_of(Which which) const;
   void select_centers();
-  void cover(const PointTree& lights, double reach, uint32_t center);
+  void cover(const PointTree& lights, double factor, uint32_t center);
   void join_nearest();
   void join_groups();
   bool is_nearest_of_all(const Candidate& nearest, uint32_t light) const;
@@ -75,8 +75,8 @@ class Selection {
   ClusterSettings settings_;
   const Blocked blocked_;
   const std::vector<uint32_t> order_;  // without the lights that have a centre of their own, or a group
-  const PointTree round_;              // of the lights in order_ that shine all around
-  const PointTree narrow_;             // of the others
+  const PointTree omni_;               // of the lights in order_ that shine all around
+  const PointTree cones_;              // of the others
   std::vector<float> d_min_;           // that each light would have as a centre
   std::vector<uint32_t> rank_;         // of each light that is a centre
   std::vector<Candidate> nearest_;
@@ -103,14 +103,14 @@ void Selection::select_centers() {
     if (nearest_[light].center != none) continue;
     rank_[light] = i;
     nearest_[light] = {0.0, i, light};
-    cover(round_, 1.0, light);
-    cover(narrow_, 2.0, light);
+    cover(omni_, 1.0, light);
+    cover(cones_, 2.0, light);
   }
 }
 
-void Selection::cover(const PointTree& lights, double reach, uint32_t center) {
+void Selection::cover(const PointTree& lights, double factor, uint32_t center) {
   const double d_min = d_min_[center];
-  const SquaredRadius radius(reach * largest_d_min_factor() * d_min);
+  const SquaredRadius radius(factor * largest_d_min_factor() * d_min);
   lights.visit_near(lights_[center].position_ws, radius, [&](uint32_t light) {
     const Candidate candidate{distance_m(light, center), rank_[center], center};
     const bool covers = candidate.distance_m <= d_min_factor(light) * d_min;
@@ -125,20 +125,20 @@ bool Selection::is_nearest_of_all(const Candidate& nearest, uint32_t light) cons
   const double slope =
       settings_.scaling == DistanceScaling::none ? 0.0 : double{settings_.d_init_m} / double{settings_.z_far_m};
   const double own_d_min = 0.99999 * d_min_[light];  // for rounding's sake
-  const double least_d_min = own_d_min - slope * reach(lights_[light]) * nearest.distance_m;
+  const double least_d_min = own_d_min - slope * straight_per_metric(lights_[light]) * nearest.distance_m;
   return nearest.distance_m < d_min_factor(light) * least_d_min;
 }
 
 // §3.1.3. The nearest of the centres that cover a light bounds the search for its nearest one.
 Candidate Selection::nearest_center(const PointTree& centers, uint32_t light) const {
   Candidate nearest = nearest_[light];
-  const double own_reach = reach(lights_[light]);
-  SquaredRadius radius(own_reach * nearest.distance_m);
+  const double own_factor = straight_per_metric(lights_[light]);
+  SquaredRadius radius(own_factor * nearest.distance_m);
   centers.visit_near(lights_[light].position_ws, radius, [&](uint32_t center) {
     const Candidate candidate{distance_m(light, center), rank_[center], center};
     if (!candidate.before(nearest) || is_blocked(light, center)) return;
     nearest = candidate;
-    radius = SquaredRadius(own_reach * nearest.distance_m);
+    radius = SquaredRadius(own_factor * nearest.distance_m);
   });
   return nearest;
 }

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "recipe_schema.h"
 #include "frame_schema.h"
 #include "lights/light_clusters.h"
 #include "lights/surroundings.h"
+#include "recipe_schema.h"
 #include "view/camera.h"
 #include "world/world.h"
 

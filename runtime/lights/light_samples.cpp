@@ -140,13 +140,13 @@ glm::vec3 LightSamples::added_by(const pack::Light& light, uint32_t p, const Cam
 }
 
 void LightSamples::light_points(const Camera& camera, const std::stop_token& stop) {
-  reach_.resize(lights_.shadowed.size());
+  contributions_.resize(lights_.shadowed.size());
   for (uint32_t i = 0; i < lights_.shadowed.size(); ++i) {
     stop_if_asked(stop);
     for (uint32_t p = 0; p < points_.size(); ++p) {
       const glm::vec3 added = added_by(light(i), p, camera);
       if (luminance(added) <= 0.0f) continue;
-      reach_[i].push_back({p, added});
+      contributions_[i].push_back({p, added});
       if (sees(i, p)) points_[p].reference += added;
     }
   }
@@ -177,8 +177,8 @@ void LightSamples::expose(const std::optional<float>& exposure_ev) {
     point.unshadowable *= exposure;
     point.reference *= exposure;
   }
-  for (auto& of_light : reach_)
-    for (Reach& reach : of_light) reach.radiance *= exposure;
+  for (auto& of_light : contributions_)
+    for (Contribution& contribution : of_light) contribution.radiance *= exposure;
 }
 
 bool LightSamples::is_lit(uint32_t i, const glm::vec3& place_ws) const {

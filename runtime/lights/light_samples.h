@@ -73,7 +73,7 @@ class LightSamples {
     glm::vec3 reference;     // radiance with a shadow map for each light
   };
   /// What a light adds to a point that it sees, wherever that is not nothing.
-  struct Reach {
+  struct Contribution {
     uint32_t point;
     glm::vec3 radiance;
   };
@@ -87,7 +87,7 @@ class LightSamples {
   std::span<const pack::Light> lights() const { return lights_.shadowed; }
   const pack::Light& light(uint32_t light) const { return lights_.shadowed[light]; }
   std::span<const Point> points() const { return points_; }
-  std::span<const Reach> reach(uint32_t light) const { return reach_[light]; }
+  std::span<const Contribution> contributions(uint32_t light) const { return contributions_[light]; }
   uint32_t cell_count() const { return cell_count_; }  // points, and cells of the grid that see nothing or no light
   float exposure_ev() const { return exposure_ev_; }
 
@@ -116,7 +116,7 @@ class LightSamples {
   SampledLights lights_;
   std::vector<Point> points_;
   std::vector<uint32_t> material_;  // of each point
-  std::vector<std::vector<Reach>> reach_;
+  std::vector<std::vector<Contribution>> contributions_;
   mutable std::vector<uint8_t> sees_;  // light after light, a byte for each point: 0, 1 or unknown
   mutable uint64_t rays_cast_ = 0;
   uint32_t cell_count_ = 0;

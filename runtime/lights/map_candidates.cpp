@@ -11,8 +11,8 @@ namespace chandelier {
 MapCandidates::MapCandidates(std::span<const pack::Light> lights, DynamicLights dynamic_lights) {
   places_.reserve(lights.size());
   for (const pack::Light& light : lights) {
-    const bool keeps_own = light.group != 0 || light.unclustered != 0 ||
-                           (light.dynamic != 0 && dynamic_lights == DynamicLights::own);
+    const bool keeps_own =
+        light.group != 0 || light.unclustered != 0 || (light.dynamic != 0 && dynamic_lights == DynamicLights::own);
     if (is_directional(light))
       places_.push_back({light.direction_ws, keeps_own ? Kind::shares_none : Kind::directional});
     else

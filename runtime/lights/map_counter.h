@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "recipe_schema.h"
 #include "lights/cluster_counter.h"
+#include "recipe_schema.h"
 #include "view/camera.h"
 #include "world/world.h"
 

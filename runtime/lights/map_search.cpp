@@ -27,8 +27,8 @@ MapSearch::MapSearch(const LightSamples& samples, const MapCandidates& candidate
   const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);
   contributions_.resize(map_count_);
   for (uint32_t light = 0; light < map_count_; ++light)
-    for (const auto& reach : samples.reach(light))
-      contributions_[light].push_back({reach.point, glm::dot(reach.radiance, weights)});
+    for (const auto& contribution : samples.contributions(light))
+      contributions_[light].push_back({contribution.point, glm::dot(contribution.radiance, weights)});
   for (const auto& point : samples.points()) {
     luminance_.push_back(glm::dot(point.reference, weights));
     reference_.push_back(shown_(luminance_.back()));

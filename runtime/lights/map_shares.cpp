@@ -76,9 +76,10 @@ Sharing::Sharing(const LightSamples& samples, std::span<const uint32_t> center) 
   contributions_.resize(center.size());
   for (uint32_t light = 0; light < center.size(); ++light) {
     shares_.push_back({{center[light], 1.0f}});
-    for (const auto& reach : samples.reach(light)) {
-      contributions_[light].push_back({reach.point, glm::dot(reach.radiance, weights)});
-      if (samples.sees(center[light], reach.point)) luminance_[reach.point] += contributions_[light].back().luminance;
+    for (const auto& contribution : samples.contributions(light)) {
+      contributions_[light].push_back({contribution.point, glm::dot(contribution.radiance, weights)});
+      if (samples.sees(center[light], contribution.point))
+        luminance_[contribution.point] += contributions_[light].back().luminance;
     }
   }
   for (uint32_t p = 0; p < luminance_.size(); ++p) error_ += squared_error(p, luminance_[p]);

@@ -4,10 +4,10 @@
 
 #include <vector>
 
-#include "recipe_schema.h"
 #include "frame_schema.h"
 #include "lights/light_clusters.h"
 #include "pack_schema.h"
+#include "recipe_schema.h"
 #include "view/camera.h"
 #include "world/world.h"
 

@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "lights/occupancy.h"
-#include "recipe_schema.h"
 #include "rays/pack_rays.h"
+#include "recipe_schema.h"
 #include "world/world.h"
 
 namespace chandelier::lights {

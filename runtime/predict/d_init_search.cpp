@@ -129,7 +129,7 @@ bool keeps(const FrameStats& stats, const Budget& budget) {
 }
 
 // Let s and t be centres with d, and c one of the centres with a smaller d' that cover all lights. Metric distances are
-// from half the straight one up to it (reach 2). Were both s and t covered by c, they would be within 4 d'_min(c) of
+// from half the straight one up to it. Were both s and t covered by c, they would be within 4 d'_min(c) of
 // each other, but are farther apart than d_min(s), and d_min(s) is at least d / d' (1 - 2 d' / z_far) d'_min(c), as |s
 // c| is at most 2 d'_min(c). So where 4 d' <= d (1 - 2 d' / z_far), each centre with d has one with d' to itself. The
 // reference's path, taken from a number of clusters on, only adds maps. Rounding is less than a thousandth.

@@ -14,7 +14,7 @@ namespace {
 constexpr uint64_t most_layers = 2048;
 constexpr uint64_t most_visibility_bytes = uint64_t{128} << 20;
 
-// A device may allow less: then the frame takes more rounds and holds less at a time, which changes no other counter.
+// A device may allow less: then the frame takes more passes over groups of maps, and holds less at a time, which changes no other counter.
 RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe) {
   const uint64_t cubes = recipe.shadow_budget_bytes / cube_bytes(recipe.face_size_px);
   return {.maps = static_cast<uint32_t>(std::clamp<uint64_t>(cubes, 1, most_layers / 6)),

@@ -44,9 +44,9 @@ Bounds moved(const std::array<glm::vec4, 3>& rows, const glm::vec3& min_ls, cons
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec3 row(rows[axis]);
     const double middle = glm::dot(row, center) + double{rows[axis].w};
-    const double reach = glm::dot(glm::abs(row), half);
-    bounds.min_ws[axis] = rounded_down(middle - reach);
-    bounds.max_ws[axis] = -rounded_down(-(middle + reach));
+    const double extent = glm::dot(glm::abs(row), half);
+    bounds.min_ws[axis] = rounded_down(middle - extent);
+    bounds.max_ws[axis] = -rounded_down(-(middle + extent));
   }
   return bounds;
 }

@@ -53,8 +53,8 @@ TEST(ErrorEstimateTest, OneMapForBothSidesIsAsWrongAsItIsByHand) {
     if (point.position_ws.y > 0.1f) continue;
     glm::vec3 all(0.0f);
     for (uint32_t light = 0; light < 4; ++light)
-      for (const auto& reach : s.samples->reach(light))
-        if (&s.samples->points()[reach.point] == &point) all += reach.radiance;
+      for (const auto& contribution : s.samples->contributions(light))
+        if (&s.samples->points()[contribution.point] == &point) all += contribution.radiance;
     const glm::vec3 d = shown(point.position_ws.x < 0 ? all : glm::vec3(0.0f)) - shown(point.reference);
     sum += glm::dot(d, d);
   }

@@ -107,7 +107,7 @@ TEST(ClusterMetricTest, ASpotLightsDistanceIsItsLargestApparentOffsetButAtLeastH
     const double distance = metric_distance_m(light, center);
     EXPECT_NEAR(distance, expected, 0.002 * straight);
     EXPECT_LE(distance, straight);
-    EXPECT_GE(distance * reach(light), straight);
+    EXPECT_GE(distance * straight_per_metric(light), straight);
     half += distance == 0.5 * straight;
     whole += distance == straight;
     light.cone_cos = -1.0f;

@@ -54,7 +54,7 @@ TEST(LightSamplesTest, BacksHideNothing) {
     const Sampled s(scene);
     ASSERT_GT(s.samples->points().size(), 1000u);
     for (const auto& point : s.samples->points()) EXPECT_NEAR(point.position_ws.y, double_sided ? 4.0f : 0.0f, 0.01f);
-    EXPECT_EQ(s.samples->reach(0).empty(), double_sided);
+    EXPECT_EQ(s.samples->contributions(0).empty(), double_sided);
   }
 }
 
@@ -65,12 +65,12 @@ TEST(LightSamplesTest, AddsWhatTheShaderAdds) {
   scene.lights.push_back(test::point_light({0, 2, 0}, 10, 4));
   const Sampled s(scene);
   float nearest = INFINITY, luminance = 0.0f;
-  for (const auto& reach : s.samples->reach(0)) {
-    const float away = glm::length(
-        glm::vec2(s.samples->points()[reach.point].position_ws.x, s.samples->points()[reach.point].position_ws.z));
+  for (const auto& contribution : s.samples->contributions(0)) {
+    const float away = glm::length(glm::vec2(s.samples->points()[contribution.point].position_ws.x,
+                                             s.samples->points()[contribution.point].position_ws.z));
     if (away >= nearest) continue;
     nearest = away;
-    luminance = reach.radiance.x;
+    luminance = contribution.radiance.x;
   }
   ASSERT_LT(nearest, 0.1f);
   // Illuminance 10 / 4 * (1 - 1/16); Fresnel 0.04 off the diffuse part; the microfacet layer D V F = 1/pi * 1/4 * 0.04.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "frame/recipe.h"
 #include "lights/light_list.h"
 #include "world_of.h"
 

@@ -26,9 +26,9 @@ TEST(MapSharesTest, TwoHalfBlindMapsShareALightAsTheSquaresSay) {
                   test::point_light({0, 30, 0}, 500, 1000)};
   const Sampled s(scene, {.exposure_ev = -8.0f});
   double left = 0.0, right = 0.0;
-  for (const auto& reach : s.samples->reach(2)) {
-    const bool is_left = s.samples->sees(0, reach.point), is_right = s.samples->sees(1, reach.point);
-    const double w = reach.radiance.x;
+  for (const auto& contribution : s.samples->contributions(2)) {
+    const bool is_left = s.samples->sees(0, contribution.point), is_right = s.samples->sees(1, contribution.point);
+    const double w = contribution.radiance.x;
     if (is_left != is_right) (is_left ? left : right) += w * w;
   }
   const std::vector<uint32_t> center{0, 1, 0};
