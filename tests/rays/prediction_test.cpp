@@ -390,8 +390,8 @@ TEST(Prediction, ARadiusThatItsAuthorGaveIsNoError) {
 
 TEST(Prediction, RefusesAnswersThatItDoesNotKnow) {
   const pack::Contents pack = lights_in_a_box(4, 5);
-  const pack::View view = pack::view_of(pack);
-  Predictor predictor(view);
+  const World world(pack::view_of(pack));
+  Predictor predictor(world);
   for (size_t stage = 0; stage < stage_choices().size(); ++stage) {
     RenderSettings settings;
     with_answer(settings.recipe, stage,
@@ -403,7 +403,7 @@ TEST(Prediction, RefusesAnswersThatItDoesNotKnow) {
       EXPECT_EQ(error.what(), std::string(stage_choices()[stage].stage) + ": there is no answer of number 77");
     }
   }
-  EXPECT_THROW(count_casters(static_cast<Cull>(77), {}, view), std::invalid_argument);
+  EXPECT_THROW(count_casters(static_cast<Cull>(77), {}, world), std::invalid_argument);
 }
 
 TEST(Prediction, CountsLightsMapsAndViews) {
