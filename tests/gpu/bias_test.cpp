@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <iostream>
 
+#include "../unit/world_of.h"
 #include "gpu_test.h"
 #include "lights/light_list.h"
 
@@ -205,7 +206,7 @@ void expect_penumbra(gpu::Device& device, const std::vector<pack::Light>& lights
 
 TEST_F(BiasTest, PenumbraIsThatOfADiscLight) {
   const pack::Light lamp = point_light({0, 4, 0}, 30, 20);
-  const frame::ShadowMap map = select_lights({{lamp}}, clustered(Filter::pcss, d_init_m, 1024), {}, 1.0f).maps[0];
+  const frame::ShadowMap map = select_lights(world_of({{lamp}}), clustered(Filter::pcss, d_init_m, 1024), {}, 1.0f).maps[0];
   for (const float height_m : {0.02f, 0.5f, 1.0f, 1.5f, 2.0f})
     expect_penumbra(device(), {lamp}, height_m, map.filter_radius_m * height_m / (4.0f - height_m), 0.03f);
 }
@@ -226,7 +227,7 @@ TEST_F(BiasTest, PenumbraIsThatOfTwoSuns) {
   const std::vector<pack::Light> suns{directional_light({0, -1, 0}, 3),
                                       directional_light(glm::normalize(glm::vec3(0, -1, 0.01f)), 2)};
   const Recipe recipe = clustered(Filter::pcss, d_init_m, 1024);
-  const LightList list = select_lights(suns, recipe, {}, 1.0f);
+  const LightList list = select_lights(world_of(suns), recipe, {}, 1.0f);
   ASSERT_EQ(list.maps.size(), 1u);
   for (const float height_m : {0.1f, 4.0f, 8.0f, 16.0f})
     expect_penumbra(device(), suns, height_m, list.maps[0].filter_radius_m * height_m / recipe.z_far_m, 0.06f);

@@ -94,7 +94,8 @@ class CastersTest : public GpuTest {
 };
 
 TEST_F(CastersTest, WhatThrowsNoShadowIsSeenAndDarkensNothingInAnyRecipe) {
-  const pack::File whole = things_over_a_floor(Without::nothing);
+  const pack::File whole_pack = things_over_a_floor(Without::nothing);
+  const World whole(whole_pack);
   const Picture lit = lit_everywhere();
   for (const Select select : {Select::per_light, Select::light_clusters})
     for (const Cull cull : {Cull::none, Cull::light_frustum})

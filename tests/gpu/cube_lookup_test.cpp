@@ -136,11 +136,12 @@ class CubeLookupTest : public GpuTest {
 
   // Runs select, project, cull and rasterize as a frame does, all maps in one round.
   Maps draw_maps(const pack::File& pack, uint32_t face_size_px) {
-    const GpuScene scene = upload_scene(device(), pack);
+    const World world(pack);
+    const GpuScene scene = upload_scene(device(), world);
     const Camera camera = look({0, 0, 40}, {0, 0, 0}, 1.0f);  // sees the whole room
     Maps maps;
-    maps.list = select_lights(scene.lights, {}, camera, 1.0f);
-    maps.views = project_lights(maps.list, camera, 1.0f, scene.bounds, face_size_px);
+    maps.list = select_lights(world, {}, camera, 1.0f);
+    maps.views = project_lights(maps.list, camera, 1.0f, world.bounds(), face_size_px);
     const auto count = static_cast<uint32_t>(maps.list.maps.size());
     const auto rounds = plan_rounds(maps.list, maps.views, {.maps = count});
     EXPECT_EQ(rounds.size(), 1u);
