@@ -36,7 +36,7 @@ Device::Device(const HostDevice& host)
       queue_family(host.queue_family),
       samples_bc(host.texture_compression_bc),
       samples_anisotropic(host.sampler_anisotropy),
-      instance_functions_(load_instance(host.loader, host.instance)) {
+      instance_functions_(load_instance(host.get_instance_proc_addr, host.instance)) {
   if (const std::string lack = first_lack(instance_functions_, physical); !lack.empty())
     throw Error("the host's Vulkan device does not fit: " + lack);
   try {

@@ -30,13 +30,14 @@ struct DeviceOptions {
   bool validation = false;  // Khronos' layer with synchronization validation; Error where it is not installed
   std::vector<const char*> instance_extensions;  // what a window system needs
   bool swapchain = false;
+  PFN_vkGetInstanceProcAddr loader = nullptr;  // null: the system's
   bool bounds = true;  // robustBufferAccess: reads and writes outside a buffer stay without effect
 };
 
 /// A host's own device, to be used by the runtime. All of it must outlive the Device made from it, and the device must
 /// have been made with what requirements.h asks for.
 struct HostDevice {
-  PFN_vkGetInstanceProcAddr loader = nullptr;
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;

@@ -112,7 +112,7 @@ bool matches(const std::string& wanted, size_t number, const std::string& name) 
 }  // namespace
 
 Instance::Instance(const DeviceOptions& options, std::vector<std::string>* messages) {
-  const PFN_vkGetInstanceProcAddr loader = system_loader();
+  const PFN_vkGetInstanceProcAddr loader = options.loader ? options.loader : system_loader();
   handle_ = create_instance(loader, options, messages);
   functions_ = load_instance(loader, handle_);
 }

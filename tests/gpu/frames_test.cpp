@@ -278,8 +278,11 @@ struct Engine {
     functions.vkDestroyInstance(instance, nullptr);
   }
   gpu::HostDevice host() const {
-    return {
-        .loader = host_loader, .instance = instance, .physical = physical, .device = device, .queue_family = family};
+    return {.get_instance_proc_addr = host_loader,
+            .instance = instance,
+            .physical = physical,
+            .device = device,
+            .queue_family = family};
   }
 };
 
