@@ -82,7 +82,7 @@ std::string check_voxel_large(const std::string& text) {
 void add_voxel_options(CLI::App& app, VoxelSettings& voxels) {
   app.add_option_function<std::string>(
          "--voxels", [&voxels](const std::string& text) { voxels.resolution = *resolution_of(text); },
-         "Cells of the voxel grid along each axis, N or NX,NY,NZ; 0 makes none")
+         "Cells of the voxel grid along each axis, N or NX,NY,NZ; 0 makes no grid")
       ->default_str("32")
       ->check(CLI::Validator(check_voxels, ""));
   app.add_option_function<std::string>(
@@ -90,12 +90,12 @@ void add_voxel_options(CLI::App& app, VoxelSettings& voxels) {
          [&voxels](const std::string& text) {
            voxels.mode = text == "clip" ? pack::VoxelMode::clip : pack::VoxelMode::separate;
          },
-         "Triangles over more than two cells: separate draws them always, clip cuts all to cells")
+         "Triangles in more than two cells: separate always draws them, clip cuts all triangles at cell faces")
       ->default_str("separate")
       ->check(CLI::Validator(check_voxel_large, ""));
 }
 
-/// An empty one is a script's unset variable, not a wish to do without.
+/// An empty path is most likely an unset variable of a script: refuse it.
 std::string check_path(const std::string& text) {
   return text.empty() ? "must be a path ('')" : "";
 }
@@ -123,38 +123,38 @@ void add_image_options(CLI::App& app, ImageSettings& images) {
          [&images](const std::string& text) {
            images.textures = text == "bc" ? TextureMode::bc : text == "raw" ? TextureMode::raw : TextureMode::none;
          },
-         "How images are stored: bc in blocks (BC1, BC3, BC5), raw in 4 bytes a texel, none not at all")
+         "How images are stored: bc: compressed blocks (BC1, BC3, BC5), raw: 4 bytes per texel, none: no images")
       ->default_str("bc")
       ->check(CLI::Validator(check_textures, ""));
   app.add_option("--max-texture-size", images.max_size,
-                 "Halve images until neither side is longer than this, texels; 0 sets no limit")
+                 "Halve images until no side is longer than this, texels; 0 sets no limit")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<0, 16384>, ""));
   app.add_flag("--strict", images.strict,
-               "Refuse damaged images, which are else baked with a warning as far as they can be decoded");
+               "Refuse damaged images; without it they are baked as far as they can be decoded, with a warning");
 }
 
-/// What a build system wants of any tool.
+/// Options for build systems.
 void add_build_options(CLI::App& app, Options& options) {
   app.option_defaults()->group("Build step");
   app.add_option("--cache", options.cache,
-                 "Folder that keeps what was baked, for bakes of the same files; made if need be")
+                 "Folder that keeps results for later bakes of the same files; made if it is missing")
       ->type_name("DIR")
       ->check(CLI::Validator(check_path, ""));
-  app.add_option("--depfile", options.depfile, "Write which files were read, for Ninja and Make")
+  app.add_option("--depfile", options.depfile, "Write the list of files that were read, for Ninja and Make")
       ->type_name("FILE")
       ->check(CLI::Validator(check_path, ""));
   app.add_option("--json", options.json, "Write a report: times, counts and bytes of each pass, warnings; - is stdout")
       ->type_name("FILE")
       ->check(CLI::Validator(check_path, ""));
-  app.add_option("-j,--threads", options.threads, "Threads; 0: all cores. The pack is the same for any number")
+  app.add_option("-j,--threads", options.threads, "Number of threads; 0: all cores. The pack is the same for any number")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<0, 1024>, ""));
-  auto* quiet = app.add_flag("-q,--quiet", options.quiet, "No progress and no summary; warnings and errors stay");
-  app.add_flag("-v,--verbose", options.verbose, "Say how long each pass took")->excludes(quiet);
+  auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print no progress and no summary, only warnings and errors");
+  app.add_flag("-v,--verbose", options.verbose, "Print how long each pass took")->excludes(quiet);
 }
 
-/// The options that shape the pack, as they were given or by default.
+/// The options that affect the pack, with their values, given or default.
 std::vector<std::pair<std::string, std::string>> settings_of(const CLI::App& app) {
   std::vector<std::pair<std::string, std::string>> out;
   for (const CLI::Option* option : app.get_options()) {
@@ -180,40 +180,40 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.option_defaults()->group(kBakingGroup);
   app.add_option(
          "--scene", options.import.scene,
-         "Which scene of a glTF with several, by name or else by number from 0 [the one that the file shows first]")
+         "The scene to bake where a glTF has several: its name, or its number from 0 [the one that the file shows first]")
       ->type_name("NAME|N")
       ->check(CLI::Validator(check_scene, ""));
   app.add_option("--batch-triangles", options.bake.batch_triangles,
-                 "Most triangles in a batch, a multiple of 4, 4 to 512")
+                 "Largest number of triangles in a batch, a multiple of 4 from 4 to 512")
       ->capture_default_str()
       ->check(CLI::Validator(check_batch_triangles, ""));
   app.add_option("--range-threshold", options.bake.range_threshold_lx,
-                 "A light without a range ends where its illuminance is this, lux")
+                 "A light without a range ends where its illuminance has fallen to this, lux")
       ->capture_default_str()
       ->check(CLI::Validator(check_range_threshold, ""));
   app.add_option("--position-error", options.bake.position_error_m,
-                 "Most that a vertex may be moved to store it in fewer bits, metres, 0 to 1; 0 moves none")
+                 "Largest distance that a vertex may move so that it takes fewer bits, metres, 0 to 1; 0 keeps floats")
       ->capture_default_str()
       ->check(CLI::Validator(check_position_error, ""));
-  app.add_option("--normal-bits", options.bake.normal_bits, "Bits of each of a normal's two numbers, 8 to 16")
+  app.add_option("--normal-bits", options.bake.normal_bits, "Bits of each of a normal's two stored numbers, 8 to 16")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<8, 16>, ""));
   app.add_option("--uv-bits", options.bake.uv_bits,
-                 "Bits of a texture coordinate after the point, up to 20; 0 keeps them as they are")
+                 "Fractional bits of a texture coordinate, up to 20; 0 keeps floats")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<0, 20>, ""));
   app.add_option("--smooth-angle", options.bake.smooth_angle_deg,
-                 "Where normals are missing, smooth edges up to this angle, degrees; 0 makes all flat, as glTF asks")
+                 "Where normals are missing, smooth across edges up to this angle, degrees; 0 makes all faces flat, as glTF asks")
       ->capture_default_str()
       ->check(CLI::Validator(check_smooth_angle, ""));
   app.add_flag(
       "--glass-shadows", options.bake.glass_shadows,
-      "Materials that let half of the light through or more (KHR_materials_transmission) throw shadows too, as "
+      "Materials that let half of the light or more through (KHR_materials_transmission) cast shadows too, as "
       "if they were opaque");
   add_voxel_options(app, options.bake.voxels);
   add_image_options(app, options.bake.images);
   app.add_flag("--compress", options.compress,
-               "Make the pack small: sections are compressed where that saves, and decoded when it is opened");
+               "Make the pack small: compress sections where that saves; they are decoded when the pack is opened");
   add_build_options(app, options);
   try {
     app.parse(argc, argv);

@@ -9,14 +9,14 @@
 namespace chandelier::player {
 namespace {
 
-constexpr uint8_t kDarkest = 8;           // of 255: what is no brighter is black to the eye
-constexpr size_t kPixelsForOneLit = 500;  // fewer lit ones are a gleam that nobody finds
+constexpr uint8_t kDarkest = 8;           // of 255: what is not brighter looks black
+constexpr size_t kPixelsForOneLit = 500;  // with fewer lit ones the picture counts as black
 
 void warn(const Options& options, const std::string& what) {
   fmt::print(stderr, "chandelier-play: warning: {}: {}\n", options.pack.string(), what);
 }
 
-// Nothing of it needs light.
+// All materials are unlit.
 bool is_unlit(const pack::View& pack) {
   return std::all_of(pack.materials.begin(), pack.materials.end(),
                      [](const pack::Material& material) { return material.unlit != 0; });
@@ -39,9 +39,9 @@ void warn_of_no_lights(const Options& asked, const Options& options, const pack:
       options.pack.filename().string());
   if (is_dark_without_lights(options, pack))
     warn(options,
-         "has no lights: only what glows by itself is seen; --headlight on or --ambient 0.5 show the rest; " + lamps);
+         "has no lights: only what glows is visible; --headlight on or --ambient 0.5 shows the rest; " + lamps);
   else if (!asked.headlight && options.ambient == 0.0f)
-    warn(options, "has no lights: a headlight at the camera shows it (--headlight off: none); " + lamps);
+    warn(options, "has no lights: a headlight in the camera shows it (--headlight off turns it off); " + lamps);
 }
 
 bool is_black(const Picture& picture) {
@@ -58,15 +58,15 @@ void warn_of_black(const Options& options, const pack::View& pack, const Picture
   if (is_dark_without_lights(options, pack) || !is_black(picture)) return;
   if (options.exposure_ev)
     warn(options,
-         fmt::format("the picture is black with --exposure {:g}; --exposure auto finds one that is not, unless "
-                     "nothing in view is lit",
+         fmt::format("the picture is black with --exposure {:g}; try --exposure auto, which works unless nothing in "
+                     "view is lit",
                      *options.exposure_ev));
   else if (options.headlight.value_or(0.0f) > 0.0f || options.ambient > 0.0f)
-    warn(options, "the picture is black: the camera sees nothing, or black things only; --camera looks from elsewhere");
+    warn(options, "the picture is black: the camera sees nothing, or only black surfaces; try another --camera");
   else
     warn(options,
-         "the picture is black: the camera sees nothing that a light reaches; --headlight on lights what it "
-         "sees, --ambient 0.5 everything, --camera looks from elsewhere");
+         "the picture is black: the camera sees nothing that a light reaches; try --headlight on, --ambient 0.5 or "
+         "another --camera");
 }
 
 }  // namespace chandelier::player

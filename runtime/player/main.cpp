@@ -34,7 +34,7 @@ int list_devices() {
   return 0;
 }
 
-// What the validation layer said, the end of the device included.
+// Messages of the validation layer, those at the device's destruction included.
 int report_validation(const std::vector<std::string>& messages) {
   for (const std::string& message : messages) fmt::print(stderr, "chandelier-play: validation: {}\n", message);
   fmt::print(stderr, "chandelier-play: {} messages from the validation layer\n", messages.size());

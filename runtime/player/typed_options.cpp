@@ -45,7 +45,7 @@ std::vector<std::string> names_of(std::span<const Answer> answers) {
   return names;
 }
 
-// What the answers to each stage's question mean, and those of settings that have names.
+// The answers of each stage, and of settings whose values have names, with their meanings.
 std::string answers_text() {
   std::string text;
   const auto add = [&](std::string_view option, std::string_view question, std::span<const Answer> answers) {
@@ -79,13 +79,13 @@ std::string footer() {
       "  chandelier-play scene.chandelier --compare truth,lightcluster --report report\n"
       "  chandelier-play scene.chandelier --path walk.json --preset lightcluster --report report\n"
       "  chandelier-play scene.chandelier --predict --preset lightcluster --max-shadow-maps 24\n"
-      "\nExit status: 0 done, 1 failed (or the validation layer spoke), 2 wrong usage.";
+      "\nExit status: 0 done, 1 failed (or the validation layer reported something), 2 wrong usage.";
   return text;
 }
 
 void declare_output(CLI::App& app, Typed& typed) {
   app.add_option("PACK", typed.pack, "The pack to draw, made by chandelier-bake");
-  app.add_option("--output", typed.output, fmt::format("Draw without a display into this file: {}", image_kinds_text()))
+  app.add_option("--output", typed.output, fmt::format("Draw into this file, without a display: {}", image_kinds_text()))
       ->type_name("FILE")
       ->group("Output");
   app.add_option("--size", typed.size, "Width and height of the picture, pixels")
@@ -93,7 +93,7 @@ void declare_output(CLI::App& app, Typed& typed) {
       ->capture_default_str()
       ->group("Output");
   app.add_option("--frames", typed.frames,
-                 "Timed frames to draw [1, with --compare 5, beside truth 1; a window closes after so many]")
+                 "Timed frames to draw [1; with --compare 5, or 1 if a side is truth]. A window closes after that many")
       ->type_name("N")
       ->check(number_between(1, 1000000))
       ->group("Output");
@@ -101,7 +101,7 @@ void declare_output(CLI::App& app, Typed& typed) {
   app.add_option("--compare", typed.compare, "Draw with two presets and report their difference")
       ->type_name("A,B")
       ->group("Output");
-  app.add_flag("--predict", typed.predict, "Say what a frame will take, without drawing it or opening a device")
+  app.add_flag("--predict", typed.predict, "Print what a frame will cost, without drawing it or opening a device")
       ->group("Output");
   app.add_option("--path", typed.path,
                  "Move the camera along this path and report what changes from frame to frame [60 frames]")
@@ -115,19 +115,19 @@ void declare_output(CLI::App& app, Typed& typed) {
 void declare_view(CLI::App& app, Typed& typed) {
   app.add_option(
          "--camera", typed.camera,
-         "A camera of the pack, or eye and target in the glTF's coordinates, vertical angle [the pack's first, else "
-         "one that sees something lit]")
+         "A camera of the pack by name, or eye, target (glTF's coordinates, metres) and vertical angle in degrees [the "
+         "pack's first camera; without one, a view of something lit]")
       ->type_name("NAME|ex,ey,ez,tx,ty,tz,fov_deg")
       ->group("View");
-  app.add_option("--ambient", typed.ambient, "Radiance from everywhere")
+  app.add_option("--ambient", typed.ambient, "Radiance from every direction")
       ->type_name("R")
       ->check(number_between(0.0, 1e6))
       ->capture_default_str()
       ->group("View");
   app.add_option(
          "--headlight", typed.headlight,
-         "A light in the camera, as bright at any distance: auto, on, off, or the radiance that it gives a white "
-         "surface. auto: on where the pack has no lights and there is no --ambient")
+         "A light in the camera, equally bright at any distance: auto, on, off, or the radiance of a white surface that "
+         "faces it. auto: on if the pack has no lights and there is no --ambient")
       ->type_name("auto|on|off|R")
       ->capture_default_str()
       ->group("View");
@@ -138,7 +138,7 @@ void declare_view(CLI::App& app, Typed& typed) {
       ->type_name("N|auto")
       ->capture_default_str()
       ->group("View");
-  app.add_option("--exposure", typed.exposure, "Stops, or auto: from the picture's own brightness")
+  app.add_option("--exposure", typed.exposure, "Stops; auto computes it from the picture's brightness")
       ->type_name("EV|auto")
       ->capture_default_str()
       ->group("View");
@@ -148,8 +148,8 @@ void declare_device(CLI::App& app, Typed& typed) {
   app.add_option("--device", typed.device, "Part of a Vulkan device's name, or its number [a GPU, else a CPU]")
       ->type_name("NAME")
       ->group("Device");
-  app.add_flag("--list-devices", typed.list_devices, "List the Vulkan devices and leave")->group("Device");
-  app.add_flag("--validation", typed.validation, "Use the validation layer; exit 1 if it has anything to say")
+  app.add_flag("--list-devices", typed.list_devices, "List the Vulkan devices and exit")->group("Device");
+  app.add_flag("--validation", typed.validation, "Use the validation layer; exit status 1 if it reports anything")
       ->group("Device");
 }
 
@@ -203,19 +203,20 @@ void declare_recipe(CLI::App& app, Typed& typed) {
 
 void declare_budget(CLI::App& app, Typed& typed) {
   const std::string group =
-      "Budget (chooses d-init: --d-init where that keeps maps and bytes. Or is kept by --select error-driven. Maps and "
-      "bytes come before the error)";
-  app.add_option("--max-shadow-maps", typed.max_shadow_maps, "Most shadow maps of a frame")
+      "Budget (light clusters: chooses d-init, not below a given --d-init. --select error-driven: limits the selection. "
+      "Maps and bytes come before the error)";
+  app.add_option("--max-shadow-maps", typed.max_shadow_maps, "Largest number of shadow maps in a frame")
       ->type_name("N")
       ->check(number_between(1, 1e9))
       ->group(group);
-  app.add_option("--max-shadow-bytes", typed.max_shadow_bytes, "Most depth of all shadow maps of a frame, MiB")
+  app.add_option("--max-shadow-bytes", typed.max_shadow_bytes, "Largest size of all shadow maps of a frame together, MiB")
       ->type_name("MIB")
       ->check(number_between(1, 1 << 20))
       ->group(group);
   app.add_option(
          "--max-error", typed.max_error,
-         "Most error expected of the shown picture, RMSE against a shadow map for each light; as few maps as do")
+         "Largest expected error of the shown picture, RMSE against one shadow map per light; takes the fewest maps that "
+         "meet it")
       ->type_name("RMSE")
       ->check(number_between(0, 1))
       ->group(group);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one does in the window: the keys that window.cpp asks for, and what --help and this folder's README say of them.
+// The keys of the window: window.cpp reads them, --help and this folder's README list them.
 #pragma once
 
 #define GLFW_INCLUDE_NONE
@@ -28,7 +28,7 @@ inline constexpr std::array window_keys{
     WindowKey{Does::up, GLFW_KEY_E, "E", "fly up"},
     WindowKey{Does::faster, GLFW_KEY_LEFT_SHIFT, "Shift", "held: four times as fast"},
     WindowKey{Does::look, GLFW_MOUSE_BUTTON_RIGHT, "Right mouse button", "held: look around"},
-    WindowKey{Does::keep_looking, GLFW_KEY_TAB, "Tab", "look around without the button; again: no longer"},
+    WindowKey{Does::keep_looking, GLFW_KEY_TAB, "Tab", "look around without the button; again: stop"},
     WindowKey{Does::speed, 0, "Mouse wheel", "fly faster or slower"},
     WindowKey{Does::headlight, GLFW_KEY_H, "H", "headlight at the camera on or off"},
     WindowKey{Does::quit, GLFW_KEY_ESCAPE, "Esc", "quit"},
