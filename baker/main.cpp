@@ -154,12 +154,12 @@ void import_all(const baker::Options& options, const baker::Progress& progress, 
 /// A pack that shows nothing is more likely a mistake than a wish.
 void warn_of_nothing(const pack::Contents& pack, baker::Warnings& warnings) {
   if (pack.bake_info.instanced_triangles == 0) {
-    warnings.add("scene", "triangles", "there are none, so that nothing will be seen");
+    warnings.add("scene", "triangles", "there are none, so the pack shows nothing");
   }
   if (pack.lights.empty()) {
     warnings.add("scene", "lights",
-                 "there are none, so that it will be black: bake a glTF with lights as a second input "
-                 "(chandelier-bake SCENE LIGHTS -o PACK), or play it with --headlight or --ambient");
+                 "there are none, so pictures will be black: bake a glTF with lights as a second input "
+                 "(chandelier-bake SCENE LIGHTS -o PACK), or play the pack with --headlight or --ambient");
   }
 }
 

@@ -67,7 +67,7 @@ DecodeFunction load_decoder() {
   const std::filesystem::path path = module_path();
   void* module = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
   void* decoder = module ? dlsym(module, decode_symbol) : nullptr;
-  if (!decoder) fail(path.string(), "cannot be loaded, and without it no image: " + shortened(dlerror(), 200));
+  if (!decoder) fail(path.string(), "cannot be loaded, so no image can be decoded: " + shortened(dlerror(), 200));
   return *static_cast<const DecodeFunction*>(decoder);
 }
 

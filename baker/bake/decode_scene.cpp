@@ -23,8 +23,7 @@ void refuse_odd_pair(const EncodedImage& image, const std::vector<Texels>& sourc
   if (width * height <= std::max(kFreeTexels, kMostGrowth * largest)) return;
   const auto size = [](const Texels& of) { return std::to_string(of.width) + "x" + std::to_string(of.height); };
   fail(image.where,
-       "its shape and that of the specularGlossinessTexture it is used with differ too much to make one image of both "
-       "(" +
+       "its shape differs too much from that of its specularGlossinessTexture to make one image of both (" +
            size(sources.front()) + " and " + size(sources.back()) + ")");
 }
 

@@ -227,7 +227,7 @@ void find_glass(Scene& scene, bool glass_shadows, const ImageSettings& images, P
     if (!find_glass_of(scene, m, images, planes, warnings)) continue;
     ++found;
     warnings.add("scene", "materials",
-                 "light passes through them, so they throw no shadow (--glass-shadows gives them one)", name);
+                 "light passes through them, so they cast no shadow (--glass-shadows gives them one)", name);
   }
   pass.count("materials", static_cast<double>(found));
 }

@@ -236,7 +236,7 @@ void audit_touching(Audit& audit, const Numbers& placed) {
     if (reaches_anything(audit.pack, close)) touching.push_back(i);  // so it is in the cone
   }
   audit.name("touching_a_surface",
-             fmt::format("within {:.2g} mm of a surface, which may throw no shadow of their light", 1000 * kLeast_m),
+             fmt::format("within {:.2g} mm of a surface, which may cast no shadow from their light", 1000 * kLeast_m),
              touching);
 }
 
@@ -259,7 +259,7 @@ void audit_places(Audit& audit, const Numbers& placed) {
     if (found[i] == swallowed) inside.push_back(placed[i]);
     if (found[i] == alone) nothing.push_back(placed[i]);
   }
-  audit.name("inside_closed", "inside closed geometry, whose shadow keeps their light in", inside);
+  audit.name("inside_closed", "inside closed geometry, whose shadow blocks their light", inside);
   audit.name("reaching_nothing", "reaching nothing: no triangle is within their range and cone", nothing);
 }
 

@@ -113,7 +113,7 @@ void warn_of_rounding(const Scene& scene, const std::vector<Box>& boxes, Warning
     if (rounded && is_coarse(light.position_ws)) note(light.name, light.where, apart(light.position_ws));
   }
   const std::string what = fmt::format(
-      "so far from the origin that the file's floats are up to {:.3g} mm apart: it has them rounded to that",
+      "so far from the origin that the file's floats are up to {:.3g} mm apart: the file has rounded them",
       1000 * coarsest_m);
   for (const std::string& name : names) warnings.add("scene", "positions", what, name);
 }

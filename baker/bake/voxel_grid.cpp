@@ -42,7 +42,7 @@ pack::VoxelGrid make_voxel_grid(const glm::vec3& bounds_min_ws, const glm::vec3&
     grid.cell_size_m[axis] = static_cast<float>((high[axis] - low[axis] + 2 * margin) / cells);
     const double end = double{grid.bounds_min_ws[axis]} + cells * double{grid.cell_size_m[axis]};
     if (!std::isfinite(static_cast<float>(end)) || !std::isfinite(grid.bounds_min_ws[axis])) {
-      fail("scene", std::string("is too far apart for voxels, which --voxels 0 leaves out (") + "xyz"[axis] + " from " +
+      fail("scene", std::string("is too wide for a voxel grid; --voxels 0 makes none (") + "xyz"[axis] + " from " +
                         to_text(low[axis]) + " to " + to_text(high[axis]) + ")");
     }
   }

@@ -62,7 +62,7 @@ AnimationChannel read_channel(const Gltf& gltf, const Json& sampler, AnimationPa
   out.interpolation = interpolation_of(sampler);
   out.times_s = read_times(gltf, sampler["input"].get<int>(), where + ", input");
   const bool cubic = out.interpolation == Interpolation::cubic_spline;
-  if (cubic && out.times_s.size() < 2) fail(where + ", input", "a cubic spline has less than two keys (1)");
+  if (cubic && out.times_s.size() < 2) fail(where + ", input", "a cubic spline has fewer than two keys (1)");
   const auto output = sampler["output"].get<int>();
   if (!may_hold(path, gltf.model.accessors[static_cast<std::size_t>(output)])) {
     fail(where + ", output", "component type does not suit its path");

@@ -254,7 +254,7 @@ void lint_gltf(const Json& json, const std::string& file, Warnings& warnings) {
     warnings.add(file, "extensionsUsed", "breaks glTF: it names an extension twice");
   }
   if (json["asset"].value("minVersion", "2.0") != "2.0") {
-    warnings.add(file, "asset", "asks for a later glTF than 2.0, which is all that is read");
+    warnings.add(file, "asset", "asks for a later glTF than 2.0; only 2.0 is read");
   }
   lint_tree(lint, json, declared);
 }

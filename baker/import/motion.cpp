@@ -69,7 +69,7 @@ std::vector<glm::mat4> read_bind_matrices(const Gltf& gltf, const Json& skin, co
   }
   const Floats floats = read_floats(gltf, accessor, 16, 16, here);
   if (floats.count < joints) {
-    fail(here, "has less matrices than there are joints, " + std::to_string(joints) + " (" +
+    fail(here, "has fewer matrices than there are joints, " + std::to_string(joints) + " (" +
                    std::to_string(floats.count) + ")");
   }
   for (std::size_t i = 0; i < joints; ++i) {
@@ -93,7 +93,7 @@ Flags used_skins(const Gltf& gltf, const std::vector<PlacedNode>& placed, const 
   for (std::size_t s = 0; s < used.size(); ++s) {
     for (const Json& joint : gltf.json["skins"][s]["joints"]) {
       if (!used[s] || in_scene[joint.get<std::size_t>()]) continue;
-      warnings.add(gltf.file, place(gltf.json, "skins", s), "a joint is not in the scene, so that the skin is ignored");
+      warnings.add(gltf.file, place(gltf.json, "skins", s), "a joint is not in the scene, so the skin is ignored");
       used[s] = 0;
     }
   }

@@ -36,7 +36,7 @@ void tell(const NamedRecipe& named, const Recipe& asked, const BudgetedPlan& pla
   const FrameStats one_each{.shadow_maps = shadowed, .shadow_bytes = shadowed * cube_bytes(named.recipe.face_size_px)};
   const bool is_limited = !keeps(one_each, budget);
   if (!plan.keeps_budget)
-    fmt::print(stderr, "chandelier-play: warning: {}: no {} keeps the budget; {} shadow maps, {} bytes are left\n",
+    fmt::print(stderr, "chandelier-play: warning: {}: no {} meets the budget; this one needs {} shadow maps, {} bytes\n",
                named.preset, by_error ? "selection" : "d-init", stats.shadow_maps, stats.shadow_bytes);
   if (plan.expected_rmse)
     fmt::print(stderr, "{}: {} makes {} shadow maps, expected RMSE {:.4f}\n", named.preset, how, stats.shadow_maps,
@@ -44,14 +44,14 @@ void tell(const NamedRecipe& named, const Recipe& asked, const BudgetedPlan& pla
   if (plan.expected_rmse && *plan.expected_rmse > double{*budget.max_error})
     fmt::print(stderr, "chandelier-play: warning: {}: --max-error {} is missed by {:.4f}; {}\n", named.preset,
                *budget.max_error, *plan.expected_rmse - double{*budget.max_error},
-               is_limited ? "maps or bytes allow no less"
-               : by_error ? "more maps make no less"
-                          : "no d-init makes less");
+               is_limited ? "the limit of maps or bytes allows no less"
+               : by_error ? "more maps do not lower it"
+                          : "no d-init lowers it");
   if (!is_limited || !plan.keeps_budget || named.shared_maps->empty()) return;
   if (had_d_init && named.recipe.d_init_m == asked.d_init_m) return;
   const std::string wanted = had_d_init ? fmt::format("d-init {:.4g} m", asked.d_init_m)
                                         : fmt::format("a shadow map for each of {} lights", shadowed);
-  fmt::print(stderr, "{}: over budget with {}: {} makes {}; without their own: {}\n", named.preset, wanted, how,
+  fmt::print(stderr, "{}: over budget with {}: {} makes {}; without a map of their own: {}\n", named.preset, wanted, how,
              stats.shadow_maps, in_words(*named.shared_maps));
 }
 

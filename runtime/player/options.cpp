@@ -107,7 +107,7 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
   if (const auto reason = refusal(recipe)) throw UsageError(fmt::format("preset {}: {}", preset_name, *reason));
 #ifndef CHANDELIER_EMBREE
   if (recipe.filter == Filter::rays)
-    throw UsageError(fmt::format("preset {}: this build has no rays, which need Embree", preset_name));
+    throw UsageError(fmt::format("preset {}: this build has no rays, since it has no Embree", preset_name));
 #endif
   return {preset_name, recipe};
 }
@@ -131,7 +131,7 @@ void read_budget(const Typed& typed, Options& options) {
                                                            : "--max-error";
   options.budget.d_init_is_least = is_typed(typed, "d-init");
   if (options.budget.d_init_is_least && typed.max_error)
-    throw UsageError("--max-error: cannot be used with --d-init, whose place it takes");
+    throw UsageError("--max-error: cannot be used with --d-init, since it chooses d-init itself");
   if (options.budget.d_init_is_least &&
       std::any_of(options.recipes.begin(), options.recipes.end(),
                   [](const NamedRecipe& each) { return each.recipe.select == Select::error_driven; }))

@@ -160,7 +160,7 @@ void run_path(const Options& options, const pack::File& pack, const gpu::Device&
   const Json json = path_json(options, run, steps);
   write_file(options.report / "path.json", json.dump(2) + "\n");
   fmt::print(stderr,
-             "{}: {} frames, a frame: {:.1f} shadow maps, {:.2f} lights change their map, RMSE {:.5f} unexplained\n",
+             "{}: {} frames; per frame {:.1f} shadow maps, {:.2f} lights that change their map, RMSE {:.5f} from these changes\n",
              (options.report / "path.json").string(), steps.size(), json["mean"]["shadow_maps"].get<double>(),
              json["mean"]["lights_changed"].get<double>(), json["mean"]["unexplained_rmse"].get<double>());
 }

@@ -20,7 +20,7 @@ NamedCamera camera_of(const Options& options, const pack::File& pack) {
   if (options.camera) return {"", in_world(*options.camera, origin_m), origin_m};
   const NamedCamera camera = choose_camera(pack, options.camera_name, aspect);
   if (camera.chosen == ChosenView::inside || camera.chosen == ChosenView::without_sky)
-    fmt::print(stderr, "{}: has no camera: chosen {}, where something lit is seen; this one is --camera {}\n",
+    fmt::print(stderr, "{}: has no camera: chosen {}, a view of something lit, which is --camera {}\n",
                options.pack.string(), name_of(camera.chosen), camera_numbers(pack.view(), camera.camera));
   return camera;
 }

@@ -54,7 +54,7 @@ uint32_t frames_in_flight(const gpu::Device& device) {
 std::string title(const LiveScene& live, const FrameStats& stats) {
   const Options& options = live.scene().options;
   return fmt::format("{}{}: {}, {:.1f} ms, {} lights, {} shadow maps", options.pack.filename().string(),
-                     live.is_older() ? " (an older one: it cannot be read now)" : "", options.recipes.front().preset,
+                     live.is_older() ? " (an older one: the file cannot be read now)" : "", options.recipes.front().preset,
                      stats.frame_ms, stats.lights, stats.shadow_maps);
 }
 

@@ -167,7 +167,7 @@ class Good(BakeTest):
         scene = self.write("scene.gltf", gltf)
         done = self.run_bake("-q", scene, "-o", self.pack)
         self.assertEqual(done.stderr, "chandelier-bake: warning: scene: materials: light passes through them, so they "
-                                      "throw no shadow (--glass-shadows gives them one) (pane)\n")
+                                      "cast no shadow (--glass-shadows gives them one) (pane)\n")
         self.assertTrue(self.inspect()["materials"][0]["shadowless"])
         report = self.folder / "report.json"
         self.bake("-q", scene, "--glass-shadows", "--json", report)

@@ -153,7 +153,7 @@ const std::multimap<std::string, std::string> kTold = {
     {"MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS", "POSITION has no bounds"},
     {"MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", "a primitive's attributes have different counts"},
     {"NODE_MATRIX_TRS", "it has a matrix and its parts: the matrix counts"},
-    {"NODE_SKIN_NO_SCENE", "a joint is not in the scene, so that the skin is ignored"},
+    {"NODE_SKIN_NO_SCENE", "a joint is not in the scene, so the skin is ignored"},
     {"NODE_SKIN_WITH_NON_SKINNED_MESH", "a skin is ignored: its mesh has vertices without joints"},
     {"ONE_OF_MISMATCH", "it is of two types"},
     {"ONE_OF_MISMATCH", "it has not one source"},

@@ -67,7 +67,7 @@ TEST(Glass, ThrowsNoShadowFromHalfTheLightOn) {
     ASSERT_EQ(baked.warnings.size(), factor >= 0.5 ? 1u : 0u) << factor;
     if (factor < 0.5) continue;
     EXPECT_EQ(baked.warnings[0],
-              "scene: materials: light passes through them, so they throw no shadow (--glass-shadows gives them one) "
+              "scene: materials: light passes through them, so they cast no shadow (--glass-shadows gives them one) "
               "(glass)");
   }
 }

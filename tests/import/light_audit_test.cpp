@@ -190,7 +190,7 @@ TEST(LightAudit, NamesALightInAClosedBulb) {
     stage.add_box({-0.05f, 2.95f, -0.05f}, {0.05f, 3.05f, 0.05f}, {.double_sided = double_sided});
     stage.add_light({0, 3, 0});
     stage.add_light({3, 3, 0});
-    expect_one(stage, "inside closed geometry, whose shadow keeps their light in (lamp 0)");
+    expect_one(stage, "inside closed geometry, whose shadow blocks their light (lamp 0)");
   }
 }
 

@@ -382,7 +382,7 @@ TEST(Skin, IsRefusedWhereItCannotPose) {
                   },
                   "skin 0 'leg', joints: points past the end, there are 3 (8)"},
                  {"few matrices", [](GltfBuilder& g) { g.json["accessors"][2]["count"] = 1; },
-                  "skin 0 'leg', inverseBindMatrices: has less matrices than there are joints, 2 (1)"},
+                  "skin 0 'leg', inverseBindMatrices: has fewer matrices than there are joints, 2 (1)"},
                  {"matrix that is not affine",
                   [](GltfBuilder& g) {
                     std::vector<float> ones(32, 1);

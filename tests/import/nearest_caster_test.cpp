@@ -131,7 +131,7 @@ TEST(NearestCaster, IsNamedWhereNoNearPlaneIsNearEnough) {
   EXPECT_TRUE(warnings_of(lamp_under_a_ceiling(0.0005)).empty());
   const auto lines = warnings_of(lamp_under_a_ceiling(0.0001));
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_NE(lines[0].find("within 0.18 mm of a surface, which may throw no shadow of their light (lamp)"),
+  EXPECT_NE(lines[0].find("within 0.18 mm of a surface, which may cast no shadow from their light (lamp)"),
             std::string::npos)
       << lines[0];
   GltfBuilder away = lamp_under_a_ceiling(0.0001);  // a spot light that shines away from it
