@@ -21,7 +21,7 @@ DIRECT_ONLY = {"max_bounces": 0, "use_denoising": False, "use_adaptive_sampling"
 
 @contextlib.contextmanager
 def changed(*changes):
-    """(owner, values) pairs, as they were again afterwards. What an owner has not is left out."""
+    """Sets (owner, values) pairs, and restores them afterwards. Skips what an owner does not have."""
     before = []
     try:
         for owner, values in changes:
@@ -105,17 +105,17 @@ def show(sheet):
 
 
 class CHANDELIER_OT_compare(bpy.types.Operator):
-    """Render the scene's camera with Cycles, direct light only, and with Chandelier, and show both and where they differ. Cycles knows
-    no range: where lights end, Chandelier is darker"""
+    """Render the scene's camera with Cycles, direct light only, and with Chandelier, and show both and where they differ. Cycles has
+    no range, so Chandelier is darker where lights end"""
     bl_idname = "chandelier.compare"
     bl_label = "Compare with Cycles"
     bl_options = {"REGISTER"}
 
-    samples: IntProperty(name="Samples", description="Of Cycles, a pixel", default=128, min=2, soft_max=4096)
-    scale: FloatProperty(name="Size", description="Of the render resolution", default=50, min=1, max=100, subtype="PERCENTAGE")
+    samples: IntProperty(name="Samples", description="Samples of Cycles per pixel", default=128, min=2, soft_max=4096)
+    scale: FloatProperty(name="Size", description="Part of the render resolution", default=50, min=1, max=100, subtype="PERCENTAGE")
     preset: EnumProperty(name="Preset", default="lightcluster", items=(
-        ("lightcluster", "Light Clusters", "As the scene's shadow settings have it"),
-        ("truth", "Rays", "Shadows by rays to each light: what is left is not of shadow maps"),
+        ("lightcluster", "Light Clusters", "With the scene's shadow settings"),
+        ("truth", "Rays", "Shadows by rays to each light; the remaining difference does not come from shadow maps"),
         ("reference", "Reference", "A hard shadow map for each light")))
 
     @classmethod

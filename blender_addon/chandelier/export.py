@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Export through Blender's own glTF exporter, and a look at what it has written."""
+"""Export through Blender's own glTF exporter, and a check of the file that it wrote."""
 
 import contextlib
 import math
@@ -39,9 +39,9 @@ def export(context, path):
             raise RuntimeError(f"{path}: the exporter wrote nothing")
         depsgraph = context.evaluated_depsgraph_get()
         check = gltf_check.check(written, scene_lights.read(depsgraph), *shadows.meant(depsgraph))
-        check.errors += [f"{name}: was moved without a keyframe, and went back to its animation's place, which is exported"
+        check.errors += [f"{name}: was moved without a keyframe, so its animation moved it back, and that place is exported"
                          for name in unkeyed]
-        check.errors += [f"{name}: belongs to another file, and the exporter writes its shape keys otherwise than they are seen"
+        check.errors += [f"{name}: belongs to another file, and the exporter writes its shape keys differently than Blender shows them"
                          for name in odd]
         with writing(path):
             os.replace(written, path)
@@ -108,7 +108,7 @@ class CHANDELIER_OT_export(bpy.types.Operator, ExportHelper):
         for line in check.errors:
             self.report({"ERROR"}, line)
         for name in check.extra:
-            self.report({"WARNING"}, f"{name}: is in the file, though Blender does not show or render it")
+            self.report({"WARNING"}, f"{name}: is in the file, although Blender does not show or render it")
         self.report({"INFO"}, f"{check.lights} lights in {self.filepath}")
         return {"FINISHED"}
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's glTF exporter calls: writes each light's watts, range and extras.chandelier, and what throws no shadow.
+"""Hooks of Blender's glTF exporter: write each light's watts, range and extras.chandelier, and which objects cast no shadow.
 
-The exporter swallows what is raised here and says that it has finished, so that export.py checks the written file.
-It has no hook for lights; all nodes with the same light share one dict, which is filled again for each of them."""
+The exporter swallows exceptions of a hook and reports FINISHED, so export.py checks the written file.
+There is no hook for lights. All nodes with the same light share one dict, which is filled again for each of them."""
 
 import bpy
 

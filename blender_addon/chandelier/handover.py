@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bake and Play: export, chandelier-bake beside Blender, then chandelier-play, which shows each new pack by itself."""
+"""Bake and Play: export, chandelier-bake in the background, then chandelier-play, which shows each new pack by itself."""
 
 import os
 import pathlib
@@ -16,7 +16,7 @@ POLL_S = 0.1
 
 
 class Handover:
-    """What runs, and what came of it. No file keeps it, and Blender's own types cannot hold a process."""
+    """The running programs and their results. A plain class, since Blender's own types cannot hold a process; nothing is saved."""
 
     def __init__(self):
         self.bake, self.player, self.play_command = None, None, []
@@ -31,7 +31,7 @@ class Handover:
         return f"Baking {self.bake.doing.replace('_', ' ')} {self.bake.progress:.0%}" if self.bake.doing else "Baking"
 
     def start(self, context, play_after=False):
-        """Exports and begins to bake. False where that cannot be: `error` says why."""
+        """Exports and starts the bake. False if that fails: `error` says why."""
         self.stop()
         self.error, self.notes, self.done, self.play_after = "", [], "", play_after
         surprises_ui.find(context)
@@ -39,7 +39,7 @@ class Handover:
         try:
             program = tools.find("chandelier-bake", tool_folders())
             check = export.export(context, str(pack) + ".glb")
-            self.notes = [*check.errors, *(f"{name}: is in the pack, though Blender does not show or render it" for name in check.extra)]
+            self.notes = [*check.errors, *(f"{name}: is in the pack, although Blender does not show or render it" for name in check.extra)]
             cache = pathlib.Path(bpy.app.tempdir) / "chandelier-cache"
             self.bake = tools.Job(tools.bake_command(program, str(pack) + ".glb", pack, cache))
         except (tools.ToolError, RuntimeError, ValueError, OSError) as error:
@@ -49,7 +49,7 @@ class Handover:
         return True
 
     def poll(self):
-        """Takes in what has ended. True while something is still running."""
+        """Collects the results of programs that have ended. True while one is still running."""
         if self.bake and not self.bake.is_running():
             job, self.bake = self.bake, None
             self.error = job.error
@@ -66,12 +66,12 @@ class Handover:
         return self.bake is not None or self.player is not None
 
     def _take_warnings(self):
-        """What the player has said since."""
+        """Adds the player's new warnings to the notes."""
         said, self.player.warnings = self.player.warnings, []
         self.notes += [note for note in dict.fromkeys(said) if note not in self.notes]
 
     def play(self, command, anew=True):
-        """Starts the player. An open one shows what takes its pack's place by itself: where its command is the same it may stay."""
+        """Starts the player. An open player with the same command stays: it shows a replaced pack by itself."""
         try:
             command = [tools.find("chandelier-play", tool_folders()), *command]
             if self.player and self.player.command == command and not anew and self.player.is_running():
@@ -98,7 +98,7 @@ class Handover:
         self.player = None
 
 
-# Timers, handlers, panels and operators, which Blender makes anew for each call, all look at the one that runs.
+# One object for timers, handlers, panels and operators, which Blender creates again for each call.
 handover = Handover()
 
 
@@ -111,7 +111,7 @@ def pack_path(scene):
 
 
 def play_command(scene):
-    """Without the program, which is looked for when it starts."""
+    """Arguments only: the program is searched for when it starts."""
     settings, camera = scene.chandelier, perspective_camera(scene)
     names = tools.Shown.__dataclass_fields__.keys() - {"camera"}
     shown = tools.Shown(camera=camera.name if camera else "", **{name: getattr(settings, name) for name in names})
@@ -119,7 +119,7 @@ def play_command(scene):
 
 
 def tick():
-    """Blender's timer: again after so many seconds, or never."""
+    """Blender's timer: returns the seconds to the next call, or None to stop."""
     running = handover.poll()
     show_status()
     return POLL_S if running else None
@@ -131,7 +131,7 @@ def watch():
 
 
 def wait():
-    """Without windows there are no timers: until the bake has ended."""
+    """Waits until the bake has ended. Without windows Blender runs no timers."""
     while handover.bake:
         handover.bake.process.wait()
         handover.poll()
@@ -152,7 +152,7 @@ def show_status():
 
 
 def bake(operator, context, play):
-    """For an operator: in a window it returns at once, and the timer sees to the rest."""
+    """For an operator. In a window it returns at once, and the timer does the rest."""
     if handover.start(context, play):
         watch()
         if bpy.app.background:

@@ -20,29 +20,29 @@ class Placing:
 
     jitter: FloatProperty(
         name="Jitter", description="Each light is moved at random by up to this", default=0, min=0, unit="LENGTH")
-    seed: IntProperty(name="Seed", description="Another seed, other random places", default=0, min=0)
+    seed: IntProperty(name="Seed", description="Another seed gives other random places", default=0, min=0)
     kind: EnumProperty(name="Type", default="POINT", items=(
         ("POINT", "Point", "Shines everywhere"), ("SPOT", "Spot", "Shines into a cone")))
     aim: EnumProperty(name="Aim", default="WAY", items=(
-        ("WAY", "By Place", "Along a curve, towards the object, along a surface's normal, or as the object points"),
+        ("WAY", "By Place", "Along the curve, towards the object, along the surface's normal, or in the object's own direction"),
         ("DOWN", "Down", "Straight down")))
-    power: FloatProperty(name="Power", description="Of each light", default=40, min=0, soft_max=1000, unit="POWER")
+    power: FloatProperty(name="Power", description="Power of each light", default=40, min=0, soft_max=1000, unit="POWER")
     temperature: FloatProperty(
-        name="Temperature", description="Of the black body whose colour the lights have, kelvin", default=4000, min=800,
+        name="Temperature", description="Temperature of a black body with the lights' colour, kelvin", default=4000, min=800,
         max=20000, step=10000, precision=0)
     range: FloatProperty(
-        name="Range", description="Where the lights end (their Custom Distance); 0: nowhere, and the baker derives it", default=8,
+        name="Range", description="Distance at which the lights end (their Custom Distance); 0: not set, the baker derives it", default=8,
         min=0, soft_max=100, unit="LENGTH")
-    radius: FloatProperty(name="Radius", description="Of each light: softens its shadow", default=0.05, min=0, soft_max=1, unit="LENGTH")
+    radius: FloatProperty(name="Radius", description="Radius of each light; it softens the shadow", default=0.05, min=0, soft_max=1, unit="LENGTH")
     share: BoolProperty(
-        name="Share Data", description="All have one light data-block, so that one edit changes all", default=False)
+        name="Share Data", description="All lights use one data-block, so one edit changes all", default=False)
 
-    wanted = "an object that is no light"  # what `sources` takes
+    wanted = "an object that is not a light"  # what `sources` takes
 
     @classmethod
     def poll(cls, context):
-        """Says nothing of what is selected: Blender asks again before it adjusts the operator in the redo panel, while the lights
-        that it placed are still there and selected instead."""
+        """Must not test the selection: Blender calls this again before it adjusts the operator in the redo panel, while the lights
+        that it placed still exist and are selected."""
         return context.mode == "OBJECT"
 
     @classmethod
@@ -63,7 +63,7 @@ class Placing:
             points = placement.jittered(points, self.jitter, rng) if self.jitter > 0 else points
             made += self._make(context, source.name, points, ways, made[0].data if made and self.share else None)
         if not made:
-            self.report({"WARNING"}, "No light was placed: nothing there to place it on")
+            self.report({"WARNING"}, "No light was placed: the selected objects have no place for one")
             return {"CANCELLED"}
         select_only(context, made)
         self.report({"INFO"}, f"{len(made)} lights")
@@ -109,8 +109,8 @@ class Placing:
 class Spaced(Placing):
     """By number or by distance."""
     by: EnumProperty(name="By", default="COUNT", items=(
-        ("COUNT", "Count", "So many lights"), ("SPACING", "Spacing", "A light after each such distance")))
-    count: IntProperty(name="Count", description="Lights on each", default=10, min=1, max=20000, soft_max=500)
+        ("COUNT", "Count", "A number of lights"), ("SPACING", "Spacing", "A distance between lights")))
+    count: IntProperty(name="Count", description="Number of lights on each object", default=10, min=1, max=20000, soft_max=500)
     spacing: FloatProperty(
         name="Spacing", description="Distance from light to light", default=1, min=0.01, soft_max=20, unit="LENGTH")
 
@@ -123,9 +123,9 @@ class Spaced(Placing):
 
 class Sparse(Placing):
     """At random, apart from each other."""
-    count: IntProperty(name="Count", description="Most lights on each; 0: no limit", default=50, min=0, max=20000, soft_max=500)
+    count: IntProperty(name="Count", description="Largest number of lights on each object; 0: no limit", default=50, min=0, max=20000, soft_max=500)
     spacing: FloatProperty(
-        name="Least Distance", description="No two lights are closer than this", default=0.5, min=0, soft_max=20, unit="LENGTH")
+        name="Least Distance", description="Two lights are never closer than this", default=0.5, min=0, soft_max=20, unit="LENGTH")
 
     def shown(self):
         return ("count", "spacing")
@@ -154,10 +154,10 @@ class CHANDELIER_OT_place_around(Spaced, bpy.types.Operator):
 
     distance: FloatProperty(
         name="Distance", description="From the object's bounding cylinder to the circle", default=0.5, soft_max=20, unit="LENGTH")
-    rings: IntProperty(name="Circles", description="Above each other", default=1, min=1, soft_max=20)
+    rings: IntProperty(name="Circles", description="Number of circles, one above the other", default=1, min=1, soft_max=20)
     step: FloatProperty(name="Step", description="Height from circle to circle", default=1, unit="LENGTH")
     height: FloatProperty(
-        name="Height", description="Of the lowest circle above the object's middle", default=0, unit="LENGTH")
+        name="Height", description="Height of the lowest circle above the object's middle", default=0, unit="LENGTH")
 
     def shown(self):
         return (*super().shown(), "distance", "rings", "step", "height")
@@ -209,14 +209,14 @@ class CHANDELIER_OT_scatter(Sparse, bpy.types.Operator):
 
     def places(self, context, source, rng):
         if self.count == 0 and self.spacing == 0:
-            self.report({"WARNING"}, f"{source.name}: has room for any number of lights that may be at one place: give a count "
+            self.report({"WARNING"}, f"{source.name}: without a least distance there is room for any number of lights: give a count "
                         "or a least distance")
             return np.empty((0, 3)), np.empty((0, 3))
         lower, upper = bounds_of(source)
         inside = inside_of(context, source) if self.volume == "MESH" and source.type == "MESH" else None
         points = placement.scattered(lower, upper, self.spacing, self.count, rng, inside)
         if len(points) < self.count:
-            self.report({"WARNING"}, f"{source.name}: only {len(points)} of {self.count} lights are {self.spacing:g} m apart there")
+            self.report({"WARNING"}, f"{source.name}: only {len(points)} of {self.count} lights fit, {self.spacing:g} m apart")
         return points, np.tile(DOWN, (len(points), 1))
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Chandelier keeps in a .blend: on lights, what schemas/light_extras.schema.json lets a glTF light carry; on scenes, how
-it is going to be played. Range, radius and power are Blender's own fields."""
+"""Chandelier's settings in a .blend: of lights, those of schemas/light_extras.schema.json; of scenes, how the pack is played.
+Range, radius and power are Blender's own fields."""
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
@@ -12,7 +12,7 @@ OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
 def tag(settings, context):
-    """Changes of a script's properties tell nobody by themselves: the light's data counts as changed."""
+    """Blender raises no event for changes of a script's properties, so mark the light's data as changed."""
     settings.id_data.update_tag()
 
 
@@ -26,21 +26,21 @@ def redraw(settings, context):
 
 class LightSettings(bpy.types.PropertyGroup):
     priority: IntProperty(
-        name="Priority", description="Who keeps a shadow map of its own when the budget ends: higher first",
+        name="Priority", description="Lights with a higher priority keep a shadow map of their own when the budget is short",
         default=128, min=0, max=255, override=OVERRIDABLE, update=tag)
     dynamic: BoolProperty(
-        name="Dynamic", description="Something other than this file's animation will move the light or change it",
+        name="Dynamic", description="Something other than this file's animation will move or change the light",
         default=False, override=OVERRIDABLE, update=tag)
     cluster: BoolProperty(
-        name="Cluster", description="The light may share a shadow map; off: it gets one of its own",
+        name="Cluster", description="Let the light share a shadow map; off: it gets one of its own",
         default=True, override=OVERRIDABLE, update=tag)
     group: StringProperty(
-        name="Group", description="Lights with the same group share one shadow map, and with no other light. Empty: none",
+        name="Group", description="Lights of one group share one shadow map with each other and with no other light. Empty: no group",
         default="", override=OVERRIDABLE, update=tag)
 
 
 class HiddenBySolo(bpy.types.PropertyGroup):
-    """A light that solo hid in a view layer, and shows again when it ends."""
+    """A light that solo has hidden in a view layer, and shows again when solo ends."""
     light: PointerProperty(type=bpy.types.Object)
     view_layer: StringProperty()
 
@@ -48,41 +48,41 @@ class HiddenBySolo(bpy.types.PropertyGroup):
 class SceneSettings(bpy.types.PropertyGroup):
     """Names and limits are chandelier-play's."""
     d_init: FloatProperty(
-        name="Distance", description="Lights closer than this to a cluster's centre share its shadow map, at the camera; "
-        "0: each light has its own. A budget may widen it", default=0.5, min=0, soft_max=10, unit="LENGTH", update=redraw)
+        name="Distance", description="Lights closer to a cluster's centre than this share its shadow map; valid at the camera. "
+        "0: each light has its own map. A budget may enlarge it", default=0.5, min=0, soft_max=10, unit="LENGTH", update=redraw)
     distance_scaling: EnumProperty(
-        name="Farther Away", update=redraw, description="How the distance follows the distance to the camera", default="grow", items=(
-            ("grow", "Grows", "Lights that are far from the camera share more: times 1 + |C| / z_far"),
-            ("paper-formula", "Shrinks", "As LightCluster's formula is printed: times 1 - |C| / z_far"),
-            ("none", "Stays", "The same everywhere: nothing changes when the camera moves")))
+        name="Farther Away", update=redraw, description="How the sharing distance changes with the distance from the camera", default="grow", items=(
+            ("grow", "Grows", "Lights that are far from the camera share more maps: times 1 + |C| / z_far"),
+            ("paper-formula", "Shrinks", "As in LightCluster's printed formula: times 1 - |C| / z_far"),
+            ("none", "Stays", "The same everywhere, so nothing changes when the camera moves")))
     z_far: FloatProperty(
-        name="Far Distance", description="Distance from the camera that scales it by one", default=30, min=0.001, soft_max=1000,
+        name="Far Distance", description="Distance from the camera (z_far) at which the sharing distance has doubled, or has shrunk to 0", default=30, min=0.001, soft_max=1000,
         unit="LENGTH", update=redraw)
     dynamic_lights: EnumProperty(
         name="Moving Lights", update=redraw, description="Lights that are dynamic, or that the exported file moves", default="cluster", items=(
             ("cluster", "Share", "They share shadow maps like others"),
-            ("own", "Own Maps", "Each has a shadow map to itself, so that the others' may stay as they are")))
+            ("own", "Own Maps", "Each has a shadow map of its own, so the maps of other lights can stay unchanged")))
     face_size: IntProperty(
         name="Face Size", description="Width of one face of a cube shadow map, texels", default=512, min=16, max=16384,
         update=redraw)
     filter: EnumProperty(name="Filter", update=redraw, description="How shadow maps are read", default="pcss", items=(
         ("pcss", "Soft (PCSS)", "Shadows soften with distance; a cluster stands for an area light"),
-        ("pcf", "Smoothed (PCF)", "Edges are smoothed by the same width everywhere"),
-        ("hard", "Hard", "One comparison; only for lights that share no shadow map: with distance 0")))
+        ("pcf", "Smoothed (PCF)", "Edges are smoothed with the same width everywhere"),
+        ("hard", "Hard", "One comparison. Only for lights that share no shadow map: set the distance to 0")))
     budget_maps: IntProperty(
-        name="Maps", description="Most shadow maps of a frame; where there are more, the distance is widened. 0: no limit", default=0, min=0,
+        name="Maps", description="Largest number of shadow maps in a frame; if there are more, the distance is enlarged. 0: no limit", default=0, min=0,
         update=redraw)
     budget_mib: IntProperty(
-        name="MiB", description="Most depth of all shadow maps of a frame, MiB; where it takes more, the distance is widened. 0: no limit",
+        name="MiB", description="Largest size of all shadow maps of a frame, MiB; if they need more, the distance is enlarged. 0: no limit",
         default=0, min=0, update=redraw)
-    view: EnumProperty(name="Seen From", update=redraw, description="Whose distance to the lights counts", default="camera", items=(
+    view: EnumProperty(name="Seen From", update=redraw, description="The camera whose distance to the lights counts", default="camera", items=(
         ("camera", "Scene Camera", "The scene's camera, as chandelier-play starts"),
-        ("viewport", "Viewport", "The 3D view that is drawn")))
+        ("viewport", "Viewport", "The 3D view itself")))
     active_light: IntProperty(
-        name="Light", description="The light that the list shows as active", default=-1, update=light_list.take_active,
+        name="Light", description="The active light of the list", default=-1, update=light_list.take_active,
         options={"SKIP_SAVE"})
     pack_path: StringProperty(
-        name="Pack", description="The pack to bake; empty: beside the .blend, with its name", default="", subtype="FILE_PATH")
+        name="Pack", description="The pack to write. Empty: beside the .blend, with the same name", default="", subtype="FILE_PATH")
     bake_on_save: BoolProperty(
         name="Bake on Save", description="Export and bake whenever the .blend is saved", default=False)
     hidden_by_solo: CollectionProperty(type=HiddenBySolo)
@@ -95,9 +95,9 @@ class Surprise(bpy.types.PropertyGroup):
 
 
 class SessionSettings(bpy.types.PropertyGroup):
-    """Of the running Blender; no file keeps it."""
+    """State of the running Blender; it is saved in no file."""
     surprises: CollectionProperty(type=Surprise)
-    has_looked: BoolProperty(description="Surprises were looked for")
+    has_looked: BoolProperty(description="The search for surprises has run")
 
 
 PARTS = (HiddenBySolo, Surprise)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What throws no shadow in Blender: objects by Ray Visibility > Shadow, their own or that of what instances them, and materials by
+"""What casts no shadow in Blender: objects by Ray Visibility > Shadow, their own or that of what instances them, and materials by
 EEVEE's Shadow Mode, where it has one (until 4.1)."""
 
 import bpy
@@ -45,7 +45,7 @@ def is_see_through(material):
 
 
 def meant(depsgraph):
-    """(objects, materials) by name, and whether they throw a shadow; None where those of one name differ."""
+    """(objects, materials) by name, and whether they cast a shadow; None where those of one name differ."""
     objects, materials = {}, {}
     for instance in depsgraph.object_instances:
         if instance.object.type in WITH_SURFACE:

@@ -57,8 +57,7 @@ def record_of(meshes, light, matrix, users, hidden, lost_motion):
 
 
 class Meshes:
-    """All that a light may be stuck in and that throws shadows, with boxes in the world, so that only what is around a light is
-    looked at."""
+    """Meshes that cast shadows and that a light may be stuck in. Boxes in the world limit the tests to those around a light."""
 
     def __init__(self, depsgraph):
         self.depsgraph, self.placed, boxes = depsgraph, [], []
@@ -113,7 +112,7 @@ def find(context):
 
 
 class CHANDELIER_OT_find_surprises(bpy.types.Operator):
-    """Look for lights that will not come out as they look here"""
+    """Look for lights that will come out of a bake differently than they look here"""
     bl_idname = "chandelier.find_surprises"
     bl_label = "Look for Surprises"
 
@@ -181,7 +180,7 @@ class CHANDELIER_OT_convert_area(OfRule, bpy.types.Operator):
 
 
 class CHANDELIER_OT_unscale_lights(OfRule, bpy.types.Operator):
-    """Take the scale from lights, which stay where they are; a light that a parent shears loses that parent"""
+    """Remove the scale of lights, which stay where they are; a light that a parent shears is unparented"""
     bl_idname = "chandelier.unscale_lights"
     bl_label = "Apply Scale"
 
@@ -198,11 +197,11 @@ class CHANDELIER_OT_unscale_lights(OfRule, bpy.types.Operator):
 
 
 class CHANDELIER_OT_set_range(OfRule, bpy.types.Operator):
-    """Give lights a range: the distance at which their illuminance has fallen to this"""
+    """Give lights a range: the distance at which their illuminance has fallen to a value"""
     bl_idname = "chandelier.set_range"
     bl_label = "Set Range"
 
-    illuminance: FloatProperty(name="Illuminance", description="Lux where the light ends", default=1, min=0.001, soft_max=100)
+    illuminance: FloatProperty(name="Illuminance", description="Illuminance at which the light ends, lux", default=1, min=0.001, soft_max=100)
 
     def mend(self, context, lights):
         for data in edit.data_of(lights):
@@ -214,10 +213,10 @@ class CHANDELIER_OT_set_range(OfRule, bpy.types.Operator):
 
 
 class CHANDELIER_OT_let_light_out(OfRule, bpy.types.Operator):
-    """Let the meshes that these lights are inside of throw no shadow (Object Properties > Visibility > Ray Visibility > Shadow): right
-    for bulbs and shades"""
+    """Switch off the shadow of the meshes that these lights are inside of (Object Properties > Visibility > Ray Visibility > Shadow):
+    right for bulbs and shades"""
     bl_idname = "chandelier.let_light_out"
-    bl_label = "Mesh Throws No Shadow"
+    bl_label = "Mesh Casts No Shadow"
 
     def execute(self, context):
         depsgraph = context.evaluated_depsgraph_get()
@@ -227,7 +226,7 @@ class CHANDELIER_OT_let_light_out(OfRule, bpy.types.Operator):
         for thing in around:
             if edit.is_editable(thing):
                 thing.visible_shadow = False
-                self.report({"INFO"}, f"{thing.name} throws no shadow now")
+                self.report({"INFO"}, f"{thing.name} casts no shadow now")
             else:
                 self.report({"WARNING"}, f"{thing.name} belongs to another file and keeps its shadow")
         find(context)
@@ -246,8 +245,8 @@ class CHANDELIER_OT_make_single_user(OfRule, bpy.types.Operator):
 
 
 class CHANDELIER_OT_mark_dynamic(OfRule, bpy.types.Operator):
-    """Mark lights as dynamic: whoever plays the pack will move them. For motion in the pack itself, bake it into keyframes of
-    the object (Object > Animation > Bake Action)"""
+    """Mark lights as dynamic: the program that plays the pack will move them. For motion in the pack itself, bake it into keyframes
+    of the object (Object > Animation > Bake Action)"""
     bl_idname = "chandelier.mark_dynamic"
     bl_label = "Mark as Dynamic"
 
@@ -264,7 +263,7 @@ register_classes, unregister_classes = bpy.utils.register_classes_factory(CLASSE
 
 @bpy.app.handlers.persistent
 def forget(*_):
-    """What was found in one file says nothing of another."""
+    """Clears the results when another file is loaded."""
     session = bpy.context.window_manager.chandelier
     session.surprises.clear()
     session.has_looked = False

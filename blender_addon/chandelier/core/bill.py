@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a selection of shadow maps takes, in one line and by name."""
+"""What a selection of shadow maps costs: one line of figures, and the names of lights over budget."""
 
 from dataclasses import dataclass
 
@@ -55,7 +55,7 @@ def over_budget_line(bill, names):
         return ""
     wanted = f"{_counted(bill.wanted_shadow_maps, 'map')}, {mib(bill.wanted_shadow_bytes)} MiB wanted"
     if bill.misses_budget:
-        return f"Over budget: {wanted}, and no distance keeps it"
+        return f"Over budget: {wanted}, and no distance meets it"
     shown = ", ".join(names[:MOST_NAMES])
     more = len(names) - MOST_NAMES
     shown += f" and {more} more" if more > 0 else ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads a written glTF back and compares its lights, and what throws no shadow, with what was meant."""
+"""Reads a written glTF back and compares it with the scene: its lights, and which objects cast no shadow."""
 
 import json
 import pathlib
@@ -16,9 +16,9 @@ NEAR_M = 1e-3  # places go through decomposed matrices and decimal numbers
 
 @dataclass
 class Check:
-    """One line for each light, object and material that came out otherwise than it was meant."""
+    """`errors`: one line for each difference between the file and the scene."""
     errors: list = field(default_factory=list)
-    extra: list = field(default_factory=list)  # names of lights that are in the file though nobody expects them
+    extra: list = field(default_factory=list)  # names of lights that are in the file but not in the scene
     lights: int = 0
 
 
@@ -71,19 +71,19 @@ def to_gltf(vectors):
 
 
 def check_shadows(gltf, objects, materials):
-    """A line for each name of which it is not so; `objects`, `materials`: see shadows.meant."""
+    """A line for each name whose shadow switch differs; `objects`, `materials`: see shadows.meant."""
     out = {}
     for things, meant in (([node for node in gltf.get("nodes", []) if "mesh" in node], objects), (gltf.get("materials", []), materials)):
         for thing in things:
             name = thing.get("name", "")
             written = ((thing.get("extras") or {}).get("chandelier") or {}).get("shadow", True)
             if meant.get(name) not in (None, written):
-                out[f"{name}: throws {'a' if written else 'no'} shadow in the file, meant was {'none' if written else 'one'}"] = True
+                out[f"{name}: casts {'a' if written else 'no'} shadow in the file, but should cast {'none' if written else 'one'}"] = True
     return list(out)
 
 
 def check(path, table, objects, materials):
-    """`table`: the LightTable that was meant; `objects`, `materials`: which throw shadows, as shadows.meant has it."""
+    """`table`: the LightTable that was meant; `objects`, `materials`: which cast shadows, as shadows.meant has it."""
     gltf = read_json(path)
     result = check_lights(gltf, table)
     result.errors += check_shadows(gltf, objects, materials)
@@ -105,7 +105,7 @@ def check_lights(gltf, table):
         if table.type[row] == photometry.DIRECTIONAL:
             near = free & (types == table.type[row])  # a sun is everywhere
         if not near.any():
-            result.errors.append(f"{name}: is not in the file where it was meant to be")
+            result.errors.append(f"{name}: is not in the file where it should be")
             continue
         numbers = np.flatnonzero(near)
         misfit = apart[numbers] + abs(intensities[numbers] / table.intensity[row] - 1)
@@ -118,12 +118,12 @@ def check_lights(gltf, table):
 
 
 def differences(table, row, way, matrix, light):
-    """What a light of the file has otherwise than a row of the table."""
+    """The differences between a light of the file and a row of the table."""
     out = []
 
     def compare(what, unit, written, meant, tolerance):
         if abs(written - meant) > tolerance * max(abs(meant), 1e-9):
-            out.append(f"{what} is {written:.7g}{unit} in the file, meant was {meant:.7g}{unit}")
+            out.append(f"{what} is {written:.7g}{unit} in the file, but should be {meant:.7g}{unit}")
 
     extras = (light.get("extras") or {}).get("chandelier") or {}
     compare("intensity", " lx" if table.type[row] == photometry.DIRECTIONAL else " cd", light.get("intensity", 1),
@@ -142,7 +142,7 @@ def differences(table, row, way, matrix, light):
         forward = -matrix[:3, 2] / np.linalg.norm(matrix[:3, 2])
         if forward @ way < 0.9999:
             written, meant = (", ".join(f"{part:g}" for part in vector.round(3) + 0.0) for vector in (forward, way))
-            out.append(f"shines to ({written}) in the file, meant was ({meant})")
+            out.append(f"shines towards ({written}) in the file, but should shine towards ({meant})")
     return out
 
 
@@ -153,8 +153,8 @@ def extras_differences(table, row, extras):
              "cluster": not flags & light_table.OWN_MAP, "shadow": not flags & light_table.NO_SHADOW}
     written = {"priority": extras.get("priority", 128), "dynamic": extras.get("dynamic", False),
                "cluster": extras.get("cluster", True), "shadow": extras.get("shadow", True)}
-    out = [f"{name} is {json.dumps(written[name])} in the file, meant was {json.dumps(meant[name])}"
+    out = [f"{name} is {json.dumps(written[name])} in the file, but should be {json.dumps(meant[name])}"
            for name in meant if written[name] != meant[name]]
     if bool(extras.get("group")) != (table.group[row] != light_table.NO_GROUP):
-        out.append("is in a group in the file, meant was none" if extras.get("group") else "has lost its group in the file")
+        out.append("is in a group in the file, but should be in none" if extras.get("group") else "has lost its group in the file")
     return out

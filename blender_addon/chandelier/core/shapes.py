@@ -33,7 +33,7 @@ def colour_of(name):
 
 
 def light_colours(center, over_budget, names, flags):
-    """(n, 4): the cluster's colour, red where the budget takes a light's own map, pale yellow where a light throws no shadow
+    """(n, 4): the cluster's colour, red where the budget takes a light's own map, pale yellow where a light casts no shadow
     (`flags`: the table's), grey where it is out of view."""
     colours = np.empty((len(center), 4), np.float32)
     colours[:] = OUT_OF_VIEW

@@ -58,7 +58,7 @@ def bake_command(program, scene, pack, cache=None):
 
 @dataclass(frozen=True)
 class Shown:
-    """What chandelier-play is asked to show; names are its own."""
+    """The arguments of chandelier-play, by its own names."""
     d_init: float = 0.5
     distance_scaling: str = "grow"
     z_far: float = 30
@@ -82,7 +82,7 @@ def play_command(program, pack, shown):
 
 
 class Job:
-    """A program that runs. What it says goes through a file, so that it never waits for someone to read it."""
+    """A running program. Its output goes through a file, so it never waits for a reader."""
 
     def __init__(self, command):
         self.command, self.name = command, pathlib.Path(command[0]).stem
@@ -105,7 +105,7 @@ class Job:
         os.unlink(self.said_path)
 
     def is_running(self):
-        """Takes in what was said since. False once it has ended; then `error` says why it failed, if it did."""
+        """Reads the new output. False once the program has ended; then `error` says why it failed, if it did."""
         if self.said.closed:
             return False
         ended = self.process.poll() is not None
@@ -151,7 +151,7 @@ class Job:
         return sum(list(PASSES.values())[:self.passed]) / sum(PASSES.values())
 
     def cancel(self):
-        """Ends it, by force where it does not listen."""
+        """Ends the program, by force if it does not stop."""
         if not self.is_running():
             return
         self.cancelled = True

@@ -230,7 +230,7 @@ class Checked(GltfCase):
         def lose(key):
             return lambda gltf, nodes, lights: lights[0]["extras"]["chandelier"].pop(key)
         for name, value, key, says in (
-                ("priority", 7, "priority", "priority is 128 in the file, meant was 7"), ("group", "bar", "group", "has lost its group"),
+                ("priority", 7, "priority", "priority is 128 in the file, but should be 7"), ("group", "bar", "group", "has lost its group"),
                 ("dynamic", True, "dynamic", "dynamic is false"), ("cluster", False, "cluster", "cluster is true"),
                 ("use_shadow", False, "shadow", "shadow is true"), ("shadow_soft_size", 0.5, "radius_m", "radius is 0 m")):
             bpy.data.batch_remove([thing for thing in self.scene.objects if thing.type == "LIGHT"])
@@ -247,12 +247,12 @@ class Checked(GltfCase):
     def test_another_cone(self):
         def widen(gltf, nodes, lights):
             lights[1]["spot"]["outerConeAngle"] = 1
-        self.assert_told(widen, "Spot", "outerConeAngle is 1 rad in the file, meant was 0.3926991 rad")
+        self.assert_told(widen, "Spot", "outerConeAngle is 1 rad in the file, but should be 0.3926991 rad")
 
     def test_a_turned_spot(self):
         def turn(gltf, nodes, lights):
             nodes["Spot"]["rotation"] = [0, 0, 0, 1]
-        self.assert_told(turn, "Spot", "shines to (0, 0, -1) in the file, meant was (0, -1, 0)")
+        self.assert_told(turn, "Spot", "shines towards (0, 0, -1) in the file, but should shine towards (0, -1, 0)")
 
     def test_files_that_are_none(self):
         table = part("scene_lights").read(bpy.context.evaluated_depsgraph_get())
@@ -357,7 +357,7 @@ class Baked(GltfCase):
         bpy.context.view_layer.update()
         check = part("export").export(bpy.context, str(self.path))
         self.assertEqual(check.errors, [
-            "Moving: was moved without a keyframe, and went back to its animation's place, which is exported"])
+            "Moving: was moved without a keyframe, so its animation moved it back, and that place is exported"])
         self.assertEqual((light.location.y, other.location.y), (0, 7))
         self.assertEqual(self.export().errors, [])
 

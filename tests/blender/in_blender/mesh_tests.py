@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What meshes become in the exported file: which throw no shadow, and how shape keys come out."""
+"""What meshes become in the exported file: which cast no shadow, and how shape keys come out."""
 
 import bpy
 
@@ -170,8 +170,8 @@ class NoShadow(MeshCase):
                 thing["extras"] = {} if thing["name"] == "Bulb" else {"chandelier": {"shadow": False}}
         meant = part("shadows").meant(bpy.context.evaluated_depsgraph_get())
         self.assertEqual(sorted(part("core.gltf_check").check_shadows(gltf, *meant)), [
-            "Bulb: throws a shadow in the file, meant was none", "Table: throws no shadow in the file, meant was one",
-            "Wood: throws no shadow in the file, meant was one"])
+            "Bulb: casts a shadow in the file, but should cast none", "Table: casts no shadow in the file, but should cast one",
+            "Wood: casts no shadow in the file, but should cast one"])
 
     def test_the_validator_has_nothing_to_say(self):
         bulb = self.cube("Bulb")
