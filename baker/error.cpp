@@ -9,12 +9,12 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kMostMessageBytes = 4000;  // a path can be that long
-constexpr std::uint64_t kMostNames = 3;          // in one warning
-constexpr std::uint32_t kNoCharacter = 0xFFFFFFFFu;
+constexpr std::size_t most_message_bytes = 4000;  // a path can be that long
+constexpr std::uint64_t most_names = 3;           // in one warning
+constexpr std::uint32_t no_character = 0xFFFFFFFFu;
 
 struct Character {
-  std::uint32_t code;  // kNoCharacter: a byte that begins none
+  std::uint32_t code;  // no_character: a byte that begins none
   std::size_t bytes;
 };
 
@@ -23,10 +23,10 @@ Character character_at(const std::string& text, std::size_t at) {
   const std::uint8_t first = byte(at);
   if (first < 0x80) return {first, 1};
   const std::size_t size = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || at + size > text.size()) return {kNoCharacter, 1};
+  if (first < 0xC2 || first > 0xF4 || at + size > text.size()) return {no_character, 1};
   std::uint32_t code = first & (0x7Fu >> size);
   for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(at + i) & 0xC0) != 0x80) return {kNoCharacter, 1};
+    if ((byte(at + i) & 0xC0) != 0x80) return {no_character, 1};
     code = code << 6 | (byte(at + i) & 0x3Fu);
   }
   return {code, size};
@@ -47,13 +47,13 @@ std::string shortened(const std::string& text, std::size_t most_bytes) {
 }
 
 std::string printable(const std::string& text) {
-  const std::string part = shortened(text, kMostMessageBytes);
+  const std::string part = shortened(text, most_message_bytes);
   std::string out;
   for (std::size_t at = 0; at < part.size();) {
     const Character character = character_at(part, at);
     if (character.code == '\n') {
       out += "\\n";
-    } else if (character.code == kNoCharacter) {
+    } else if (character.code == no_character) {
       out += fmt::format("\\x{:02x}", static_cast<std::uint8_t>(part[at]));
     } else if (is_control(character.code)) {
       out += fmt::format("\\u{:04x}", character.code);
@@ -83,7 +83,7 @@ void Warnings::add(const std::string& file, const std::string& where, const std:
   const auto [it, added] = numbers_.try_emplace({file, what}, entries_.size());
   if (added) entries_.push_back({printable(file), printable(where), printable(what), "", 0});
   Entry& entry = entries_[it->second];
-  if (!name.empty() && entry.count < kMostNames) {
+  if (!name.empty() && entry.count < most_names) {
     entry.names += (entry.names.empty() ? "" : ", ") + printable(shortened(name, 80));
   }
   ++entry.count;
@@ -98,7 +98,7 @@ std::uint64_t Warnings::count() const {
 std::vector<std::string> Warnings::lines() const {
   std::vector<std::string> out;
   for (const Entry& entry : entries_) {
-    const std::uint64_t told = entry.names.empty() ? 1 : std::min(entry.count, kMostNames);
+    const std::uint64_t told = entry.names.empty() ? 1 : std::min(entry.count, most_names);
     const std::string more = entry.count > told ? fmt::format("and {} more", entry.count - told) : "";
     if (entry.names.empty()) {
       out.push_back(

@@ -11,9 +11,9 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr const char* kBakingGroup = "Baking";
+constexpr const char* baking_group = "Baking";
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* examples = R"(Examples:
   chandelier-bake scene.glb -o scene.chandelier
   chandelier-bake hall.gltf lamps.gltf -o hall.chandelier     a scene and its lights from two files
   chandelier-bake house.gltf -o upper.chandelier --scene "upper floor"     one scene of several in the file
@@ -62,17 +62,17 @@ std::optional<std::array<std::uint32_t, 3>> resolution_of(const std::string& tex
   if (parts.size() != 1 && parts.size() != 3) return std::nullopt;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string& part = parts[parts.size() == 1 ? 0 : axis];
-    if (!CLI::detail::lexical_cast(part, out[axis]) || out[axis] > kMostVoxelsOnAxis) return std::nullopt;
+    if (!CLI::detail::lexical_cast(part, out[axis]) || out[axis] > most_voxels_on_axis) return std::nullopt;
   }
   if (out[0] == 0 && out[1] == 0 && out[2] == 0) return out;
   const std::uint64_t cells = std::uint64_t{out[0]} * out[1] * out[2];
-  return cells > 0 && cells <= kMostVoxels ? std::optional(out) : std::nullopt;
+  return cells > 0 && cells <= most_voxels ? std::optional(out) : std::nullopt;
 }
 
 std::string check_voxels(const std::string& text) {
   if (resolution_of(text)) return {};
-  return "must be N or NX,NY,NZ, each from 1 to " + std::to_string(kMostVoxelsOnAxis) + " and at most " +
-         std::to_string(kMostVoxels) + " cells in all, or 0 (" + text + ")";
+  return "must be N or NX,NY,NZ, each from 1 to " + std::to_string(most_voxels_on_axis) + " and at most " +
+         std::to_string(most_voxels) + " cells in all, or 0 (" + text + ")";
 }
 
 std::string check_voxel_large(const std::string& text) {
@@ -147,7 +147,8 @@ void add_build_options(CLI::App& app, Options& options) {
   app.add_option("--json", options.json, "Write a report: times, counts and bytes of each pass, warnings; - is stdout")
       ->type_name("FILE")
       ->check(CLI::Validator(check_path, ""));
-  app.add_option("-j,--threads", options.threads, "Number of threads; 0: all cores. The pack is the same for any number")
+  app.add_option("-j,--threads", options.threads,
+                 "Number of threads; 0: all cores. The pack is the same for any number")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<0, 1024>, ""));
   auto* quiet = app.add_flag("-q,--quiet", options.quiet, "Print no progress and no summary, only warnings and errors");
@@ -158,7 +159,7 @@ void add_build_options(CLI::App& app, Options& options) {
 std::vector<std::pair<std::string, std::string>> settings_of(const CLI::App& app) {
   std::vector<std::pair<std::string, std::string>> out;
   for (const CLI::Option* option : app.get_options()) {
-    if (option->get_group() != kBakingGroup) continue;
+    if (option->get_group() != baking_group) continue;
     const bool flag = option->get_expected_max() == 0;
     std::string value = flag ? "false" : option->get_default_str();
     if (option->count() > 0) value = flag ? "true" : option->results().back();
@@ -173,14 +174,14 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   Options options;
   CLI::App app("Bakes glTF scenes into a pack for chandelier-play. Several inputs are merged into one scene.",
                "chandelier-bake");
-  app.footer(kExamples);
+  app.footer(examples);
   app.set_version_flag("--version", "chandelier-bake " CHANDELIER_VERSION);
   app.add_option("SCENE", options.inputs, "glTF 2.0 files, .gltf or .glb")->required();
   app.add_option("-o,--output", options.output, "The pack to write, PACK.chandelier")->required();
-  app.option_defaults()->group(kBakingGroup);
-  app.add_option(
-         "--scene", options.import.scene,
-         "The scene to bake where a glTF has several: its name, or its number from 0 [the one that the file shows first]")
+  app.option_defaults()->group(baking_group);
+  app.add_option("--scene", options.import.scene,
+                 "The scene to bake where a glTF has several: its name, or its number from 0 [the one that the file "
+                 "shows first]")
       ->type_name("NAME|N")
       ->check(CLI::Validator(check_scene, ""));
   app.add_option("--batch-triangles", options.bake.batch_triangles,
@@ -198,18 +199,17 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.add_option("--normal-bits", options.bake.normal_bits, "Bits of each of a normal's two stored numbers, 8 to 16")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<8, 16>, ""));
-  app.add_option("--uv-bits", options.bake.uv_bits,
-                 "Fractional bits of a texture coordinate, up to 20; 0 keeps floats")
+  app.add_option("--uv-bits", options.bake.uv_bits, "Fractional bits of a texture coordinate, up to 20; 0 keeps floats")
       ->capture_default_str()
       ->check(CLI::Validator(check_whole_number<0, 20>, ""));
   app.add_option("--smooth-angle", options.bake.smooth_angle_deg,
-                 "Where normals are missing, smooth across edges up to this angle, degrees; 0 makes all faces flat, as glTF asks")
+                 "Where normals are missing, smooth across edges up to this angle, degrees; 0 makes all faces flat, as "
+                 "glTF asks")
       ->capture_default_str()
       ->check(CLI::Validator(check_smooth_angle, ""));
-  app.add_flag(
-      "--glass-shadows", options.bake.glass_shadows,
-      "Materials that let half of the light or more through (KHR_materials_transmission) cast shadows too, as "
-      "if they were opaque");
+  app.add_flag("--glass-shadows", options.bake.glass_shadows,
+               "Materials that let half of the light or more through (KHR_materials_transmission) cast shadows too, as "
+               "if they were opaque");
   add_voxel_options(app, options.bake.voxels);
   add_image_options(app, options.bake.images);
   app.add_flag("--compress", options.compress,

@@ -9,10 +9,10 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kMostColumns = 60;
-constexpr const char* kEraseLine = "\r\x1b[K";
-constexpr double kQuick_ms = 10;  // less shows as 0.00 s
-constexpr double kLong_s = 0.1;   // who watches may learn that another pass is running
+constexpr std::size_t most_columns = 60;
+constexpr const char* erase_line = "\r\x1b[K";
+constexpr double quick_ms = 10;  // less shows as 0.00 s
+constexpr double long_s = 0.1;   // who watches may learn that another pass is running
 
 }  // namespace
 
@@ -21,7 +21,7 @@ Progress::Progress(Shown shown, double patience_s, std::FILE* out) : shown_(show
   ticker_ = std::jthread([this](const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stopped_.wait_for(lock, stop, std::chrono::milliseconds(200), [&] { return stop.stop_requested(); })) {
-      if (shown_ == Shown::all_passes && seconds() > pass_began_s_ + kLong_s) tell_quick_passes();
+      if (shown_ == Shown::all_passes && seconds() > pass_began_s_ + long_s) tell_quick_passes();
       if (shown_ == Shown::rewritten && seconds() > patience_s_ && !what_.empty()) rewrite();
     }
   });
@@ -47,7 +47,7 @@ void Progress::end(const std::string& pass, double ms) const {
   if (shown_ == Shown::slow_passes && ms > 1000 * patience_s_) tell(seconds(), pass, ms);
   if (shown_ != Shown::all_passes) return;
   ++passes_ended_;
-  if (ms < kQuick_ms) {
+  if (ms < quick_ms) {
     quick_passes_ += (quick_passes_.empty() ? "" : ", ") + pass;
     quick_ms_ += ms;
     quick_ended_s_ = seconds();
@@ -71,7 +71,7 @@ void Progress::tell_quick_passes() const {
 
 void Progress::next(const std::string& what) const {
   const std::lock_guard lock(mutex_);
-  what_ = shortened(printable(what), kMostColumns);
+  what_ = shortened(printable(what), most_columns);
   done_ = total_ = 0;
 }
 
@@ -90,7 +90,7 @@ void Progress::clear() const {
 }
 
 void Progress::erase() const {
-  if (visible_) fmt::print(out_, "{}", kEraseLine);
+  if (visible_) fmt::print(out_, "{}", erase_line);
   std::fflush(out_);
   visible_ = false;
   what_.clear();
@@ -98,7 +98,7 @@ void Progress::erase() const {
 
 void Progress::rewrite() const {
   const std::string of = total_ > 0 ? fmt::format(" {}/{}", done_, total_) : "";
-  fmt::print(out_, "{}chandelier-bake: {:.1f} s: {}{}", kEraseLine, seconds(), what_, of);
+  fmt::print(out_, "{}chandelier-bake: {:.1f} s: {}{}", erase_line, seconds(), what_, of);
   std::fflush(out_);
   visible_ = true;
 }

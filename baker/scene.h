@@ -13,7 +13,7 @@
 
 namespace chandelier::baker {
 
-constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+constexpr std::uint32_t no_index = 0xFFFFFFFFu;
 
 /// No padding: vertices are compared byte by byte.
 struct Vertex {
@@ -51,8 +51,8 @@ struct MeshInstance {
   std::string where;
   glm::dmat4 world_from_local{1};
   std::uint32_t mesh = 0;
-  std::uint32_t node = kNone;  // of Scene::nodes, where an animation or a skin moves it
-  std::uint32_t skin = kNone;
+  std::uint32_t node = no_index;  // of Scene::nodes, where an animation or a skin moves it
+  std::uint32_t skin = no_index;
   bool shadowless = false;
 };
 
@@ -65,8 +65,8 @@ struct SpecularGlossiness {
   glm::vec3 diffuse_factor{1};
   glm::vec3 specular_factor{1};
   float glossiness_factor = 1;
-  std::uint32_t diffuse = kNone;              // of Scene::images: RGB sRGB, and alpha, which stays as it is
-  std::uint32_t specular_glossiness = kNone;  // RGB sRGB, alpha glossiness
+  std::uint32_t diffuse = no_index;              // of Scene::images: RGB sRGB, and alpha, which stays as it is
+  std::uint32_t specular_glossiness = no_index;  // RGB sRGB, alpha glossiness
 
   bool operator==(const SpecularGlossiness&) const = default;
 };
@@ -92,12 +92,12 @@ struct Texture {
 
 /// Rows of a 2×3 matrix from a mesh's uv to an image's (KHR_texture_transform).
 using UvTransform = std::array<glm::vec3, 2>;
-constexpr UvTransform kUvIdentity = {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
+constexpr UvTransform uv_identity = {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
 
 struct TextureUse {
-  std::uint32_t texture = kNone;
+  std::uint32_t texture = no_index;
   bool uv1 = false;
-  UvTransform uv_transform = kUvIdentity;
+  UvTransform uv_transform = uv_identity;
 };
 
 struct Material {
@@ -133,7 +133,7 @@ struct Light {
   float inner_cone_rad = 0;        // spot only
   float outer_cone_rad = 0.7854f;  // spot only
   std::string where;               // for messages: file and node
-  std::uint32_t node = kNone;      // of Scene::nodes, where an animation moves it
+  std::uint32_t node = no_index;   // of Scene::nodes, where an animation moves it
   std::optional<float> power_w;    // as its author gave it, where extras say so (light_extras.schema.json)
   std::uint32_t priority = 128;    // 0 to 255
   bool dynamic = false;
@@ -151,13 +151,13 @@ struct Camera {
   float yfov_rad = 0.8f;
   float aspect = 0;  // width over height; 0: the picture's own
   float znear_m = 0.1f;
-  std::uint32_t node = kNone;  // of Scene::nodes, where an animation moves it
+  std::uint32_t node = no_index;  // of Scene::nodes, where an animation moves it
 };
 
 /// A node that moves, or that one hangs from. Parents come before their children.
 struct Node {
   std::string name;
-  std::uint32_t parent = kNone;
+  std::uint32_t parent = no_index;
   glm::dmat4 parent_from_local{1};
   glm::dvec3 translation{0};
   glm::vec4 rotation{0, 0, 0, 1};  // unit quaternion x, y, z, w

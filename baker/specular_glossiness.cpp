@@ -19,7 +19,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr float kLeast = 1e-6f;
+constexpr float least = 1e-6f;
 
 /// As bright as it seems (HSP, Finley 2006).
 float brightness(const glm::vec3& color) {
@@ -27,26 +27,26 @@ float brightness(const glm::vec3& color) {
 }
 
 float solve_metallic(float d, float specular) {
-  if (specular <= kDielectric) return 0;
-  const float half = (d + specular - 2 * kDielectric) / 2;
+  if (specular <= dielectric) return 0;
+  const float half = (d + specular - 2 * dielectric) / 2;
   // The larger root: the smaller one is negative.
-  const float root = std::sqrt(half * half + kDielectric * (specular - kDielectric)) - half;
-  return std::clamp(root / kDielectric, 0.0f, 1.0f);
+  const float root = std::sqrt(half * half + dielectric * (specular - dielectric)) - half;
+  return std::clamp(root / dielectric, 0.0f, 1.0f);
 }
 
 }  // namespace
 
 bool is_dielectric(const glm::vec3& specular) {
-  return brightness(specular) <= kDielectric + kLeast;
+  return brightness(specular) <= dielectric + least;
 }
 
 MetallicColor metallic_color(const glm::vec3& diffuse, const glm::vec3& specular) {
   const float left = 1 - std::max({specular.r, specular.g, specular.b});  // for the diffuse colour
-  const glm::vec3 d = diffuse * (left / (1 - kDielectric));
+  const glm::vec3 d = diffuse * (left / (1 - dielectric));
   MetallicColor out;
   out.metallic = is_dielectric(specular) ? 0 : solve_metallic(brightness(d), brightness(specular));
-  const glm::vec3 by_diffuse = d / std::max(1 - out.metallic, kLeast);
-  const glm::vec3 by_specular = (specular - kDielectric * (1 - out.metallic)) / std::max(out.metallic, kLeast);
+  const glm::vec3 by_diffuse = d / std::max(1 - out.metallic, least);
+  const glm::vec3 by_specular = (specular - dielectric * (1 - out.metallic)) / std::max(out.metallic, least);
   out.base_color = glm::clamp(glm::mix(by_diffuse, by_specular, out.metallic * out.metallic), 0.0f, 1.0f);
   return out;
 }

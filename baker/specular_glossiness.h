@@ -7,7 +7,7 @@
 namespace chandelier::baker {
 
 /// What any surface that is no metal reflects, as glTF has it.
-inline constexpr float kDielectric = 0.04f;
+inline constexpr float dielectric = 0.04f;
 
 /// All linear. Roughness is 1 - glossiness.
 struct MetallicColor {

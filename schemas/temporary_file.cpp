@@ -18,7 +18,7 @@
 namespace chandelier::pack {
 namespace {
 
-constexpr std::string_view kPrefix = ".chandelier-", kSuffix = ".tmp";
+constexpr std::string_view prefix = ".chandelier-", suffix = ".tmp";
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* what) {
   throw Error(path.string() + ": " + what);
@@ -61,7 +61,7 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& path) : path_(path) {
 bool TemporaryFile::create(const std::filesystem::path& folder) {
   static std::atomic<unsigned> counter = 0;
   const std::string id = std::to_string(getpid()) + "-" + std::to_string(counter++);
-  const std::filesystem::path candidate = folder / (std::string(kPrefix) + id + std::string(kSuffix));
+  const std::filesystem::path candidate = folder / (std::string(prefix) + id + std::string(suffix));
   descriptor_ = open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0 && errno == EEXIST) return false;
   if (descriptor_ < 0) fail_system(path_, "cannot create a file in its folder", errno);
@@ -113,7 +113,7 @@ void remove_stale_files(const std::filesystem::path& folder) {
   std::error_code error;
   for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
+    if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
     const int descriptor = open(it->path().c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (descriptor < 0) continue;
     if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(it->path().c_str());

@@ -24,12 +24,12 @@ struct Threshold {
 };
 
 Threshold find_threshold(std::vector<float> alphas, std::size_t count) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float infinite = std::numeric_limits<float>::infinity();
   const auto nth = alphas.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(count, 1) - 1);
   std::nth_element(alphas.begin(), nth, alphas.end(), std::greater<>());
   const float value = *nth;
   std::size_t above = 0, equal = 0;
-  float next_above = kInfinity, next_below = -kInfinity;
+  float next_above = infinite, next_below = -infinite;
   for (const float alpha : alphas) {
     if (alpha > value) ++above, next_above = std::min(next_above, alpha);
     if (alpha < value) next_below = std::max(next_below, alpha);

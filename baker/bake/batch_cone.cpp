@@ -10,9 +10,9 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr double kWidest = 0.1;       // least cosine of θ: beyond, the cone would hardly ever cull
-constexpr double kMargin = 1e-4;      // on the cutoff, for a test in floats
-constexpr double kApexMargin = 1e-5;  // of the size of the coordinates, for an apex in floats
+constexpr double widest = 0.1;        // least cosine of θ: beyond, the cone would hardly ever cull
+constexpr double margin = 1e-4;       // on the cutoff, for a test in floats
+constexpr double apex_margin = 1e-5;  // of the size of the coordinates, for an apex in floats
 
 glm::dvec3 normal_of(const glm::vec3* corner) {
   const glm::dvec3 a = corner[0];
@@ -36,12 +36,12 @@ NormalCone normal_cone(std::span<const glm::vec3> corners) {
     const glm::dvec3 normal = normal_of(&corners[i]);
     const double cosine = glm::dot(normal, glm::dvec3(axis));
     least = std::min(least, cosine);
-    if (least <= kWidest) return {};
+    if (least <= widest) return {};
     back = std::max(back, glm::dot(center - glm::dvec3(corners[i]), normal) / cosine);
   }
-  const double sine = std::sqrt(std::max(0.0, 1 - least * least)) + kMargin;
+  const double sine = std::sqrt(std::max(0.0, 1 - least * least)) + margin;
   const glm::dvec3 reach = glm::max(glm::abs(low), glm::abs(high));
-  back += kApexMargin * std::max({reach.x, reach.y, reach.z}) / kWidest;
+  back += apex_margin * std::max({reach.x, reach.y, reach.z}) / widest;
   const glm::vec3 apex(center - back * glm::dvec3(axis));
   const bool usable = sine < 1 && std::isfinite(apex.x) && std::isfinite(apex.y) && std::isfinite(apex.z);
   return usable ? NormalCone{apex, axis, static_cast<float>(sine)} : NormalCone{};

@@ -33,19 +33,19 @@ std::vector<BvhItem> boxes_of(const PackedPrimitive& primitive, const std::vecto
   return boxes;
 }
 
-constexpr unsigned kCachedVertices = 16;
+constexpr unsigned cached_vertices = 16;
 
 /// Orders the triangles of one batch for the vertex cache.
 class BatchOrderer {
  public:
   void order(std::uint32_t* indices, std::size_t count) {
-    table_.assign(std::bit_ceil(2 * count), {kNone, 0});
+    table_.assign(std::bit_ceil(2 * count), {no_index, 0});
     vertices_.clear();
     local_.resize(count);
     for (std::size_t i = 0; i < count; ++i) local_[i] = number(indices[i]);
     ordered_.resize(count);
     // A third of meshopt_optimizeVertexCache's time, for 1.6 % more vertices at most.
-    meshopt_optimizeVertexCacheFifo(ordered_.data(), local_.data(), count, vertices_.size(), kCachedVertices);
+    meshopt_optimizeVertexCacheFifo(ordered_.data(), local_.data(), count, vertices_.size(), cached_vertices);
     for (std::size_t i = 0; i < count; ++i) indices[i] = vertices_[ordered_[i]];
   }
 
@@ -56,8 +56,8 @@ class BatchOrderer {
 
   std::uint32_t number(std::uint32_t vertex) {
     std::size_t slot = vertex * 0x9E3779B1u & (table_.size() - 1);
-    while (table_[slot].vertex != kNone && table_[slot].vertex != vertex) slot = (slot + 1) & (table_.size() - 1);
-    if (table_[slot].vertex == kNone) {
+    while (table_[slot].vertex != no_index && table_[slot].vertex != vertex) slot = (slot + 1) & (table_.size() - 1);
+    if (table_[slot].vertex == no_index) {
       table_[slot] = {vertex, static_cast<std::uint32_t>(vertices_.size())};
       vertices_.push_back(vertex);
     }
@@ -69,21 +69,21 @@ class BatchOrderer {
 };
 
 void order_within_batches(CutPrimitive& cut) {
-  constexpr std::size_t kBatches = 64;  // a task
+  constexpr std::size_t batches = 64;  // a task
   std::vector<std::size_t> first(cut.batch_counts.size() + 1, 0);
   for (std::size_t b = 0; b < cut.batch_counts.size(); ++b) first[b + 1] = first[b] + 3 * cut.batch_counts[b];
-  tbb::parallel_for(std::size_t{0}, (cut.batch_counts.size() + kBatches - 1) / kBatches, [&](std::size_t task) {
+  tbb::parallel_for(std::size_t{0}, (cut.batch_counts.size() + batches - 1) / batches, [&](std::size_t task) {
     BatchOrderer orderer;
-    for (std::size_t b = task * kBatches; b < std::min(cut.batch_counts.size(), (task + 1) * kBatches); ++b) {
+    for (std::size_t b = task * batches; b < std::min(cut.batch_counts.size(), (task + 1) * batches); ++b) {
       orderer.order(&cut.indices[first[b]], first[b + 1] - first[b]);
     }
   });
 }
 
 void order_vertices(CutPrimitive& cut) {
-  std::vector<std::uint32_t> number(cut.vertices.size(), kNone);
+  std::vector<std::uint32_t> number(cut.vertices.size(), no_index);
   for (std::uint32_t& index : cut.indices) {
-    if (number[index] == kNone) {
+    if (number[index] == no_index) {
       number[index] = static_cast<std::uint32_t>(cut.vertex_order.size());
       cut.vertex_order.push_back(index);
     }

@@ -19,10 +19,10 @@ using namespace sah;
 
 using Boxes = std::span<BvhItem>;
 
-constexpr std::size_t kParallelSplit = 8192;  // triangles, from which on two threads go on
-constexpr std::size_t kSamples = 4096;        // of a group of twice as many triangles or more
-constexpr double kBatchCost = 0.5;            // of testing and drawing a batch, in full batches' triangles
-constexpr float kBatchBegin = 1;              // what area_m2 says of a batch's first triangle
+constexpr std::size_t parallel_split = 8192;  // triangles, from which on two threads go on
+constexpr std::size_t samples = 4096;         // of a group of twice as many triangles or more
+constexpr double batch_cost = 0.5;            // of testing and drawing a batch, in full batches' triangles
+constexpr float batch_begin = 1;              // what area_m2 says of a batch's first triangle
 
 /// `left` triangles go left: those of the bins below `bin`, and if that is not enough, the lowest centres of `bin`.
 struct Split {
@@ -34,14 +34,14 @@ struct Split {
 /// Of a group of triangles, per area.
 double weight(std::size_t triangles, std::size_t most) {
   const std::size_t batches = (triangles + most - 1) / most;
-  return static_cast<double>(triangles) + kBatchCost * static_cast<double>(batches * most);
+  return static_cast<double>(triangles) + batch_cost * static_cast<double>(batches * most);
 }
 
 /// The best split along an axis: between two bins, or inside one where the left side is a whole number of batches;
 /// there both sides are charged for the whole bin. Of samples, each in a batch of its own, only between bins.
 void find_split(const AxisBins& bins, std::size_t bin_count, int axis, std::size_t total, std::size_t most,
                 Split& best) {
-  std::array<double, kMostBins> area_from;
+  std::array<double, most_bins> area_from;
   Box right;
   for (std::size_t i = bin_count; i-- > 0;) {
     right.add(bins[i].low, bins[i].high);
@@ -100,8 +100,8 @@ Halves part(Boxes boxes, const Binning& binning, const Split& split, bool sample
 }
 
 Halves halve(Boxes boxes, const Box& centres, std::size_t most) {
-  const Binning binning(centres, kMostBins);
-  if (const std::size_t stride = boxes.size() / kSamples; stride > 1) {
+  const Binning binning(centres, most_bins);
+  if (const std::size_t stride = boxes.size() / samples; stride > 1) {
     const Split split = find_split(boxes, binning, stride, most);
     if (split.axis >= 0) return part(boxes, binning, split, true);
   }
@@ -113,12 +113,12 @@ Halves halve(Boxes boxes, const Box& centres, std::size_t most) {
 
 void divide(Boxes boxes, const Box& centres, std::size_t most) {
   if (boxes.size() <= most) {
-    boxes[0].area_m2 = kBatchBegin;
+    boxes[0].area_m2 = batch_begin;
     return;
   }
   const Halves halves = halve(boxes, centres, most);
   const Boxes left = boxes.first(halves.left), right = boxes.subspan(halves.left);
-  if (boxes.size() < kParallelSplit) {
+  if (boxes.size() < parallel_split) {
     divide(left, halves.left_centres, most);
     divide(right, halves.right_centres, most);
   } else {
@@ -139,7 +139,7 @@ BatchOrder split_into_batches(std::vector<BvhItem>&& boxes, std::size_t most) {
   divide(boxes, centres_of(boxes), most);
   out.triangles.reserve(boxes.size());
   for (const BvhItem& box : boxes) {
-    if (box.area_m2 == kBatchBegin) out.counts.push_back(0);
+    if (box.area_m2 == batch_begin) out.counts.push_back(0);
     ++out.counts.back();
     out.triangles.push_back(box.number);
   }

@@ -49,7 +49,7 @@ pack::SkinVertex record_of(const SkinVertex& in) {
 }
 
 void write_vertices(const CutPrimitive& cut, const Place& place, pack::Contents& pack) {
-  constexpr SkinVertex kUnbound = {{}, {65535, 0, 0, 0}};
+  constexpr SkinVertex unbound = {{}, {65535, 0, 0, 0}};
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cut.vertex_order.size(), 8192), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const std::uint32_t from = cut.vertex_order[i];
@@ -57,7 +57,7 @@ void write_vertices(const CutPrimitive& cut, const Place& place, pack::Contents&
       pack.vertex_attributes[place.vertex + i] = cut.vertices[from].attributes;
       if (!place.skinned) continue;
       pack.skin_vertices[place.skin_vertex + i] =
-          record_of(cut.skin_vertices.empty() ? kUnbound : cut.skin_vertices[from]);
+          record_of(cut.skin_vertices.empty() ? unbound : cut.skin_vertices[from]);
     }
   });
 }

@@ -8,10 +8,10 @@
 namespace chandelier::baker {
 
 /// Numbers of a scene mesh's records among the pack's meshes, as modelled and with its triangles' winding reversed;
-/// kNone where it has no triangles or no instance needs it.
+/// no_index where it has no triangles or no instance needs it.
 struct MeshRecords {
-  std::uint32_t plain = kNone;
-  std::uint32_t mirrored = kNone;
+  std::uint32_t plain = no_index;
+  std::uint32_t mirrored = no_index;
 };
 
 bool is_mirrored(const MeshInstance& instance);

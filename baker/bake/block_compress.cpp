@@ -13,7 +13,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t kPoor = 100;  // mean squared error of an 8-bit value: 28 dB
+constexpr std::uint64_t poor = 100;  // mean squared error of an 8-bit value: 28 dB
 
 using Rgba16 = std::array<std::uint8_t, 64>;  // a block's texels
 
@@ -64,7 +64,7 @@ SquaredError compress_color(const Block& block, bool alpha, std::uint8_t* out) {
     return color_error(block, decoded, alpha);
   };
   const SquaredError error = fit(squish::kColourRangeFit);
-  return error.sum > kPoor * error.values ? fit(squish::kColourClusterFit) : error;
+  return error.sum > poor * error.values ? fit(squish::kColourClusterFit) : error;
 }
 
 /// libsquish writes BC5 but does not read it: a half of it is the alpha of a BC3 block.

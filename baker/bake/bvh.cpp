@@ -23,26 +23,26 @@ namespace {
 
 using namespace sah;
 
-constexpr float kTraversalCost = 1;            // of a node, where an item costs 1
-constexpr std::size_t kMostTried = 5;          // up to here, every way to share the items out is tried
-constexpr std::size_t kBlockNodes = 16384;     // that one thread writes
-constexpr std::size_t kParallelItems = 16384;  // from here on, a node's two sides are built by two threads
-constexpr std::size_t kSamples = 2048;         // of a node with twice as many items or more, to choose its cut from
-constexpr std::size_t kTreeletItems = 32;      // most of a treelet
-constexpr int kSahDepth = 64;  // below, nodes are cut into halves, so that no input makes a tree of a path
+constexpr float traversal_cost = 1;            // of a node, where an item costs 1
+constexpr std::size_t most_tried = 5;          // up to here, every way to share the items out is tried
+constexpr std::size_t block_nodes = 16384;     // that one thread writes
+constexpr std::size_t parallel_items = 16384;  // from here on, a node's two sides are built by two threads
+constexpr std::size_t samples = 2048;          // of a node with twice as many items or more, to choose its cut from
+constexpr std::size_t treelet_items = 32;      // most of a treelet
+constexpr int sah_depth = 64;  // below, nodes are cut into halves, so that no input makes a tree of a path
 
 struct Cut {
-  int axis = -1;           // none
-  std::size_t bin = 0;     // the first of the second child
-  float cost = kInfinity;  // area times items, of both children
+  int axis = -1;          // none
+  std::size_t bin = 0;    // the first of the second child
+  float cost = infinite;  // area times items, of both children
 };
 
 void find_cut(const AxisBins& bins, std::size_t count, int axis, Cut& best) {
-  std::array<float, kMostBins> right_costs;
+  std::array<float, most_bins> right_costs;
   Bin right = Bin::empty();
   for (std::size_t i = count - 1; i > 0; --i) {
     right.add(bins[i]);
-    right_costs[i] = right.items == 0 ? kInfinity : right.cost();
+    right_costs[i] = right.items == 0 ? infinite : right.cost();
   }
   Bin left = Bin::empty();
   for (std::size_t i = 1; i < count; ++i) {
@@ -65,11 +65,11 @@ Cut find_cut(std::span<const BvhItem> items, const Binning& binning, std::size_t
 
 /// How many items, brought to the front, the first child gets; 0 for a leaf of up to `most_leaf` items.
 std::size_t cut(std::span<BvhItem> items, std::size_t most_leaf, const Box& centres, int depth, Box& left, Box& right) {
-  const Binning binning(centres, std::min(kMostBins, 4 + items.size() / 16));
+  const Binning binning(centres, std::min(most_bins, 4 + items.size() / 16));
   Cut best;
-  if (depth < kSahDepth) {
-    best = find_cut(items, binning, std::max<std::size_t>(1, items.size() / kSamples));
-    if (best.axis < 0 && items.size() >= 2 * kSamples) best = find_cut(items, binning, 1);
+  if (depth < sah_depth) {
+    best = find_cut(items, binning, std::max<std::size_t>(1, items.size() / samples));
+    if (best.axis < 0 && items.size() >= 2 * samples) best = find_cut(items, binning, 1);
   }
   const std::size_t count = best.axis < 0 ? 0 : partition(items, binning, best.axis, best.bin, left, right);
   if (count > 0 && count < items.size()) return count;
@@ -79,10 +79,10 @@ std::size_t cut(std::span<BvhItem> items, std::size_t most_leaf, const Box& cent
   return items.size() / 2;
 }
 
-/// The best of all ways to give up to kMostTried items to two children, or to one leaf.
+/// The best of all ways to give up to most_tried items to two children, or to one leaf.
 void add_few(std::span<BvhItem> items, std::size_t most_leaf, BvhShape& shape) {
   const unsigned all = (1u << items.size()) - 1;
-  std::array<Bin, 1u << kMostTried> sets;  // by the bits of their items
+  std::array<Bin, 1u << most_tried> sets;  // by the bits of their items
   sets[0] = Bin::empty();
   for (unsigned set = 1; set <= all; ++set) {
     sets[set] = sets[set & (set - 1)];
@@ -90,10 +90,10 @@ void add_few(std::span<BvhItem> items, std::size_t most_leaf, BvhShape& shape) {
   }
   const float area = Box{sets[all].low, sets[all].high}.half_area();
   const bool can_be_leaf = items.size() <= most_leaf;
-  float best_cost = can_be_leaf ? sets[all].cost() : kInfinity;
+  float best_cost = can_be_leaf ? sets[all].cost() : infinite;
   unsigned best = can_be_leaf ? 0 : 1;  // the first child's items; the second child has the last item
   for (unsigned set = 1; set <= all / 2; ++set) {
-    const float cost = kTraversalCost * area + sets[set].cost() + sets[all - set].cost();
+    const float cost = traversal_cost * area + sets[set].cost() + sets[all - set].cost();
     if (cost < best_cost) {
       best_cost = cost;
       best = set;
@@ -101,7 +101,7 @@ void add_few(std::span<BvhItem> items, std::size_t most_leaf, BvhShape& shape) {
   }
   shape.push_back(static_cast<std::uint8_t>(best == 0 ? items.size() : 0));
   if (best == 0) return;
-  std::array<BvhItem, kMostTried> sorted;
+  std::array<BvhItem, most_tried> sorted;
   std::size_t left = 0, right = static_cast<std::size_t>(std::popcount(best));
   for (std::size_t i = 0; i < items.size(); ++i) sorted[best >> i & 1 ? left++ : right++] = items[i];
   std::copy_n(sorted.begin(), items.size(), items.begin());
@@ -110,12 +110,12 @@ void add_few(std::span<BvhItem> items, std::size_t most_leaf, BvhShape& shape) {
 }
 
 void add(std::span<BvhItem> items, std::size_t most_leaf, const Box& centres, int depth, BvhShape& shape) {
-  if (items.size() <= kMostTried) return add_few(items, most_leaf, shape);
+  if (items.size() <= most_tried) return add_few(items, most_leaf, shape);
   Box left_centres, right_centres;
   const std::size_t left = cut(items, most_leaf, centres, depth, left_centres, right_centres);
   shape.push_back(static_cast<std::uint8_t>(left == 0 ? items.size() : 0));
   if (left == 0) return;
-  if (items.size() < kParallelItems) {
+  if (items.size() < parallel_items) {
     add(items.first(left), most_leaf, left_centres, depth + 1, shape);
     add(items.subspan(left), most_leaf, right_centres, depth + 1, shape);
     return;
@@ -130,9 +130,9 @@ void add(std::span<BvhItem> items, std::size_t most_leaf, const Box& centres, in
 
 /// `first_item` is the number of items[0].
 void add_treelets(std::span<BvhItem> items, std::uint32_t first_item, const Box& centres, int depth, Treelets& out) {
-  if (items.size() > kTreeletItems) {
+  if (items.size() > treelet_items) {
     Box left_centres, right_centres;
-    const std::size_t left = cut(items, kMostLeafItems, centres, depth, left_centres, right_centres);
+    const std::size_t left = cut(items, most_leaf_items, centres, depth, left_centres, right_centres);
     add_treelets(items.first(left), first_item, left_centres, depth + 1, out);
     add_treelets(items.subspan(left), first_item + static_cast<std::uint32_t>(left), right_centres, depth + 1, out);
     return;
@@ -145,7 +145,7 @@ void add_treelets(std::span<BvhItem> items, std::uint32_t first_item, const Box&
   out.boxes.push_back(box);
   out.item_counts.push_back(static_cast<std::uint32_t>(items.size()));
   const std::size_t nodes = out.shape.size();
-  add(items, kMostLeafItems, centres, depth, out.shape);
+  add(items, most_leaf_items, centres, depth, out.shape);
   out.node_counts.push_back(static_cast<std::uint32_t>(out.shape.size() - nodes));
 }
 
@@ -229,9 +229,9 @@ struct Filler {
 /// To 10 bits behind the first, which compresses well: areas are estimates for points, and each is off by 2^-11 at
 /// most.
 float rounded(float area_m2) {
-  constexpr std::uint32_t kDropped = (1u << 13) - 1;
-  const auto bits = std::bit_cast<std::uint32_t>(area_m2) + kDropped / 2 + 1;
-  return std::min(std::bit_cast<float>(bits & ~kDropped), std::numeric_limits<float>::max());
+  constexpr std::uint32_t dropped = (1u << 13) - 1;
+  const auto bits = std::bit_cast<std::uint32_t>(area_m2) + dropped / 2 + 1;
+  return std::min(std::bit_cast<float>(bits & ~dropped), std::numeric_limits<float>::max());
 }
 
 double half_area(const pack::BvhNode& node) {
@@ -285,23 +285,23 @@ BvhShape join_treelets(std::span<const Treelets> parts, std::vector<std::uint32_
 void fill_bvh(std::span<const BvhItem> items, std::span<const std::uint32_t> order, const BvhShape& shape,
               const BvhPlace& place, std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas) {
   const Filler filler{items, order, shape, place, nodes, areas};
-  const std::size_t blocks = (shape.size() + kBlockNodes - 1) / kBlockNodes;
-  const auto block_end = [&](std::size_t block) { return std::min((block + 1) * kBlockNodes, shape.size()); };
+  const std::size_t blocks = (shape.size() + block_nodes - 1) / block_nodes;
+  const auto block_end = [&](std::size_t block) { return std::min((block + 1) * block_nodes, shape.size()); };
   std::vector<std::uint32_t> last_items(blocks);
   std::uint32_t item = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
-    for (std::size_t i = b * kBlockNodes; i < block_end(b); ++i) item += shape[i];
+    for (std::size_t i = b * block_nodes; i < block_end(b); ++i) item += shape[i];
     last_items[b] = item;
   }
   std::vector<std::vector<std::uint32_t>> left_open(blocks);
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
-    left_open[b] = filler.fill_block(b * kBlockNodes, block_end(b), last_items[b]);
+    left_open[b] = filler.fill_block(b * block_nodes, block_end(b), last_items[b]);
   });
   for (std::size_t b = blocks; b-- > 0;) {
     for (const std::uint32_t number : left_open[b]) filler.fill_inner(number, pack::none);
   }
   if (areas.empty()) return;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, shape.size(), kBlockNodes), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, shape.size(), block_nodes), [&](const auto& range) {
     for (pack::NodeArea& area : areas.subspan(place.first_node + range.begin(), range.size())) {
       area.area_m2 = rounded(area.area_m2);  // sums first, so that errors do not add up
     }

@@ -17,14 +17,14 @@ namespace chandelier::baker {
 using BvhShape = std::vector<std::uint8_t>;
 
 /// Most items of all trees in a section: BvhNode::leaf has 28 bits for an item's number.
-constexpr std::uint64_t kMostBvhItems = (1u << 28) - 1;
+constexpr std::uint64_t most_bvh_items = (1u << 28) - 1;
 
 /// What four bits of BvhNode::leaf hold.
-constexpr std::size_t kMostLeafItems = 15;
+constexpr std::size_t most_leaf_items = 15;
 
 /// Sorts `items` into the order of the leaves and returns the shape of the tree over them; nothing for no items. Uses
 /// all threads where there are many items; the result does not depend on them.
-BvhShape shape_bvh(std::span<BvhItem> items, std::size_t most_leaf = kMostLeafItems);
+BvhShape shape_bvh(std::span<BvhItem> items, std::size_t most_leaf = most_leaf_items);
 
 /// The lower parts of a tree, each over up to 32 neighbours.
 struct Treelets {

@@ -52,8 +52,8 @@ class BatchCutter {
       block_.input_area_m2 += area_m2(corners[0].position, corners[1].position, corners[2].position);
       clipper_.cut(corners, [&](std::uint32_t cell, const ClipPolygon& polygon) { fan(cell, polygon); });
       const std::uint64_t added = triangles_.size() - before;
-      if (total_.fetch_add(added, std::memory_order_relaxed) + added > kMostClippedTriangles) {
-        fail("scene", "clipped to voxels it has more than " + std::to_string(kMostClippedTriangles) +
+      if (total_.fetch_add(added, std::memory_order_relaxed) + added > most_clipped_triangles) {
+        fail("scene", "clipped to voxels it has more than " + std::to_string(most_clipped_triangles) +
                           " triangles: take fewer --voxels, or --voxel-large separate");
       }
     }

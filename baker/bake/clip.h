@@ -84,10 +84,10 @@ class UniqueVertices {
   std::vector<std::uint32_t> slots_;  // open addressing: numbers of vertices; a power of two, at most half full
 };
 
-constexpr std::uint64_t kMostClippedTriangles = std::uint64_t{1} << 28;
+constexpr std::uint64_t most_clipped_triangles = std::uint64_t{1} << 28;
 
 /// Appends a batch's triangles to `block`, cut to cells, each piece with vertices of its own. `total` counts the
-/// triangles of all blocks. Throws Error where they become more than kMostClippedTriangles.
+/// triangles of all blocks. Throws Error where they become more than most_clipped_triangles.
 void bin_clipped(const PlacedBatch& placed, const Grid& grid, std::atomic<std::uint64_t>& total, VoxelBlock& block);
 
 }  // namespace chandelier::baker

@@ -26,9 +26,9 @@ const char* name_of(ImageFormat format) {
 
 /// The first of OpenImageIO's lines, for it says things twice, without the name that it was given and what is no news.
 std::string first_line(const std::string& text, ImageFormat format) {
-  constexpr std::string_view kNoNews = "JPEG error: ";
+  constexpr std::string_view no_news = "JPEG error: ";
   std::string line = text.substr(0, text.find('\n'));
-  if (line.starts_with(kNoNews)) line.erase(0, kNoNews.size());
+  if (line.starts_with(no_news)) line.erase(0, no_news.size());
   const std::string name = std::string(" (\"") + name_of(format) + "\")";
   if (line.ends_with(name)) line.resize(line.size() - name.size());
   return line.empty() ? "unknown" : line;

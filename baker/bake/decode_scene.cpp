@@ -13,14 +13,14 @@ namespace {
 
 /// The width and height of an image that is converted from others are the larger ones of theirs.
 void refuse_odd_pair(const EncodedImage& image, const std::vector<Texels>& sources) {
-  constexpr std::uint64_t kMostGrowth = 4, kFreeTexels = std::uint64_t{1} << 24;
+  constexpr std::uint64_t most_growth = 4, free_texels = std::uint64_t{1} << 24;
   std::uint64_t width = 0, height = 0, largest = 0;
   for (const Texels& source : sources) {
     width = std::max<std::uint64_t>(width, source.width);
     height = std::max<std::uint64_t>(height, source.height);
     largest = std::max(largest, std::uint64_t{source.width} * source.height);
   }
-  if (width * height <= std::max(kFreeTexels, kMostGrowth * largest)) return;
+  if (width * height <= std::max(free_texels, most_growth * largest)) return;
   const auto size = [](const Texels& of) { return std::to_string(of.width) + "x" + std::to_string(of.height); };
   fail(image.where,
        "its shape differs too much from that of its specularGlossinessTexture to make one image of both (" +
@@ -54,8 +54,8 @@ SceneTexels decode_image(const Scene& scene, std::uint32_t image) {
     out.color = std::move(sources[0]);
     return out;
   }
-  const Texels* diffuse = from->diffuse == kNone ? nullptr : &sources.front();
-  const Texels* glossy = from->specular_glossiness == kNone ? nullptr : &sources.back();
+  const Texels* diffuse = from->diffuse == no_index ? nullptr : &sources.front();
+  const Texels* glossy = from->specular_glossiness == no_index ? nullptr : &sources.back();
   refuse_odd_pair(scene.images[image], sources);
   MetallicTexels converted = convert_texels(*from, diffuse, glossy);
   out.color = std::move(converted.base_color);

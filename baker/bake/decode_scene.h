@@ -18,7 +18,7 @@ void for_each_source(const Scene& scene, std::uint32_t image, Visit visit) {
   const std::optional<SpecularGlossiness>& from = scene.images[image].converted_from;
   if (!from) return visit(image);
   for (const std::uint32_t source : {from->diffuse, from->specular_glossiness}) {
-    if (source != kNone) visit(source);
+    if (source != no_index) visit(source);
   }
 }
 

@@ -16,12 +16,12 @@ namespace chandelier::baker {
 /// `equal(i, j)` decides. Elements are dealt by their hash to tables that fit a cache, a task each, in ascending order.
 template <typename Hash, typename Equal>
 std::vector<std::uint32_t> first_equal(std::size_t count, Hash hash, Equal equal) {
-  constexpr std::uint32_t kEmpty = 0xFFFFFFFFu;
-  constexpr std::size_t kTableElements = 1 << 14;
+  constexpr std::uint32_t empty_slot = 0xFFFFFFFFu;
+  constexpr std::size_t table_elements = 1 << 14;
   struct Keyed {
     std::uint32_t hash, element;
   };
-  const int shift = 32 - std::clamp(static_cast<int>(std::bit_width(count / kTableElements)), 0, 12);
+  const int shift = 32 - std::clamp(static_cast<int>(std::bit_width(count / table_elements)), 0, 12);
   const auto table_of = [&](std::uint32_t h) { return shift == 32 ? 0 : h >> shift; };
 
   std::vector<std::uint32_t> first(count);  // the hashes, until they are dealt
@@ -37,15 +37,15 @@ std::vector<std::uint32_t> first_equal(std::size_t count, Hash hash, Equal equal
   tbb::parallel_for(std::size_t{0}, end.size() - 1, [&](std::size_t t) {
     const std::size_t begin = t == 0 ? 0 : end[t - 1];  // dealing has moved each end to the next one's begin
     const std::size_t size = std::bit_ceil(std::max<std::size_t>(2 * (end[t] - begin), 2));
-    std::vector<Keyed> table(size, Keyed{0, kEmpty});
+    std::vector<Keyed> table(size, Keyed{0, empty_slot});
     for (std::size_t i = begin; i < end[t]; ++i) {
       const Keyed key = dealt[i];
       std::size_t slot = key.hash & (size - 1);
-      while (table[slot].element != kEmpty &&
+      while (table[slot].element != empty_slot &&
              (table[slot].hash != key.hash || !equal(table[slot].element, key.element))) {
         slot = (slot + 1) & (size - 1);
       }
-      if (table[slot].element == kEmpty) table[slot] = key;
+      if (table[slot].element == empty_slot) table[slot] = key;
       first[key.element] = table[slot].element;
     }
   });

@@ -16,8 +16,8 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr float kLeast = 0.5f;      // that passes through glass
-constexpr std::uint32_t kRows = 4;  // a triangle is looked at in the middle of each of its 16 parts
+constexpr float least = 0.5f;      // that passes through glass
+constexpr std::uint32_t rows = 4;  // a triangle is looked at in the middle of each of its 16 parts
 
 std::int64_t wrapped(std::int64_t texel, std::int64_t size, Wrap wrap) {
   if (wrap == Wrap::clamp_to_edge) return std::clamp<std::int64_t>(texel, 0, size - 1);
@@ -56,7 +56,7 @@ class Planes {
 class Channel {
  public:
   Channel(const Scene& scene, const TextureUse& use, std::size_t channel, Planes& planes) : use_(use) {
-    if (use.texture == kNone) return;
+    if (use.texture == no_index) return;
     texture_ = scene.textures[use.texture];
     plane_ = &planes.of(scene, texture_.image, channel);
   }
@@ -75,9 +75,9 @@ class Channel {
 
  private:
   static std::int64_t texel(float coordinate, std::uint32_t size, Wrap wrap) {
-    constexpr double kFarthest = 1e15;  // beyond, a float holds no part of a texel
+    constexpr double farthest = 1e15;  // beyond, a float holds no part of a texel
     const double at = std::floor(double{coordinate} * size);
-    return wrapped(static_cast<std::int64_t>(std::clamp(at, -kFarthest, kFarthest)), size, wrap);
+    return wrapped(static_cast<std::int64_t>(std::clamp(at, -farthest, farthest)), size, wrap);
   }
 
   TextureUse use_;
@@ -100,14 +100,14 @@ class Transmission {
   /// Of a triangle, in the mean.
   float of(const std::array<const Vertex*, 3>& corners) const {
     float sum = 0;
-    for (std::uint32_t row = 0; row < kRows; ++row) {
+    for (std::uint32_t row = 0; row < rows; ++row) {
       for (std::uint32_t i = 0; i < 2 * row + 1; ++i) {
-        const float down = (static_cast<float>(row) + (i % 2 ? 1.0f : 2.0f) / 3) / kRows;
-        const float along = (static_cast<float>(i / 2) + (i % 2 ? 2.0f : 1.0f) / 3) / kRows;
+        const float down = (static_cast<float>(row) + (i % 2 ? 1.0f : 2.0f) / 3) / rows;
+        const float along = (static_cast<float>(i / 2) + (i % 2 ? 2.0f : 1.0f) / 3) / rows;
         sum += at(corners, down - along, along);
       }
     }
-    return sum / (kRows * kRows);
+    return sum / (rows * rows);
   }
 
  private:
@@ -127,7 +127,7 @@ std::vector<std::uint8_t> glass_triangles(const Primitive& primitive, const Tran
   std::vector<std::uint8_t> out(primitive.indices.size() / 3);
   tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) {
     const auto corner = [&](std::size_t c) { return &primitive.vertices[primitive.indices[3 * i + c]]; };
-    out[i] = transmission.of({corner(0), corner(1), corner(2)}) >= kLeast;
+    out[i] = transmission.of({corner(0), corner(1), corner(2)}) >= least;
   });
   return out;
 }
@@ -139,11 +139,11 @@ Primitive part_of(const Primitive& whole, const std::vector<std::uint8_t>& is_gl
   out.needs_normals = whole.needs_normals;
   out.needs_tangents = whole.needs_tangents;
   out.tangents_from_uv1 = whole.tangents_from_uv1;
-  std::vector<std::uint32_t> numbers(whole.vertices.size(), kNone);
+  std::vector<std::uint32_t> numbers(whole.vertices.size(), no_index);
   for (std::size_t i = 0; i < 3 * is_glass.size(); ++i) {
     if ((is_glass[i / 3] != 0) != glass) continue;
     std::uint32_t& number = numbers[whole.indices[i]];
-    if (number == kNone) {
+    if (number == no_index) {
       number = static_cast<std::uint32_t>(out.vertices.size());
       out.vertices.push_back(whole.vertices[whole.indices[i]]);
       if (!whole.skin_vertices.empty()) out.skin_vertices.push_back(whole.skin_vertices[whole.indices[i]]);
@@ -157,7 +157,7 @@ Primitive part_of(const Primitive& whole, const std::vector<std::uint8_t>& is_gl
 std::array<std::uint64_t, 2> split(Scene& scene, std::uint32_t material, std::uint32_t glass, bool strict,
                                    Planes& planes, Warnings& warnings) {
   const Transmission transmission(scene, scene.materials[material], planes);
-  if (const std::uint32_t texture = scene.materials[material].transmission_map.texture; texture != kNone) {
+  if (const std::uint32_t texture = scene.materials[material].transmission_map.texture; texture != no_index) {
     const Texture& map = scene.textures[texture];
     tell_damage(scene, map.image, transmission.damage(), strict, warnings);
   }
@@ -183,8 +183,8 @@ std::array<std::uint64_t, 2> split(Scene& scene, std::uint32_t material, std::ui
 }
 
 bool has_maps(const Material& material) {
-  const bool may_be_metal = material.metallic_factor > 0 && material.metallic_roughness.texture != kNone;
-  return may_be_metal || material.transmission_map.texture != kNone;
+  const bool may_be_metal = material.metallic_factor > 0 && material.metallic_roughness.texture != no_index;
+  return may_be_metal || material.transmission_map.texture != no_index;
 }
 
 /// Whether any of the material throws no shadow now.
@@ -193,9 +193,9 @@ bool find_glass_of(Scene& scene, std::uint32_t number, const ImageSettings& imag
   Material& material = scene.materials[number];
   const bool textures = images.textures != TextureMode::none;
   // Without its map, which may be black nearly everywhere, the whole surface would let light through.
-  if (!textures && material.transmission_map.texture != kNone) return false;
+  if (!textures && material.transmission_map.texture != no_index) return false;
   if (!textures || !has_maps(material)) {
-    material.shadowless = material.transmission_factor * (1 - material.metallic_factor) >= kLeast;
+    material.shadowless = material.transmission_factor * (1 - material.metallic_factor) >= least;
     return material.shadowless;
   }
   const std::uint32_t glass = fit_u32(scene.materials.size(), "materials");
@@ -222,7 +222,7 @@ void find_glass(Scene& scene, bool glass_shadows, const ImageSettings& images, P
   const auto materials = static_cast<std::uint32_t>(glass_shadows ? 0 : scene.materials.size());
   for (std::uint32_t m = 0; m < materials; ++m) {
     const Material& material = scene.materials[m];
-    if (material.shadow || material.transmission_factor < kLeast) continue;
+    if (material.shadow || material.transmission_factor < least) continue;
     const std::string name = material.name.empty() ? material.where : material.name;
     if (!find_glass_of(scene, m, images, planes, warnings)) continue;
     ++found;

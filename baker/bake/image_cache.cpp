@@ -38,7 +38,7 @@ std::string read_entry(const CacheEntry& entry, std::size_t source_count, std::s
 }
 
 void add_bytes(CacheKey& key, const Scene& scene, std::uint32_t image) {
-  if (image == kNone) return key.add_text({});
+  if (image == no_index) return key.add_text({});
   const std::vector<std::uint8_t>& bytes = scene.images[image].bytes;
   key.add_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
@@ -53,7 +53,7 @@ void add_image(CacheKey& key, const Scene& scene, std::uint32_t image) {
   }
   key.add(glossiness_factor);
   for (const std::uint32_t source : {diffuse, specular_glossiness}) {
-    key.add(source == kNone);
+    key.add(source == no_index);
     add_bytes(key, scene, source);
   }
 }

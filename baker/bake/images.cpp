@@ -20,7 +20,7 @@ namespace chandelier::baker {
 namespace {
 
 /// Decoded texels in memory at a time, apart from an image that alone has more; each takes up to 16 bytes.
-constexpr std::uint64_t kTexelsAtOnce = std::uint64_t{32} << 20;
+constexpr std::uint64_t texels_at_once = std::uint64_t{32} << 20;
 
 struct Formats {
   pack::ImageFormat raw, blocks;
@@ -88,7 +88,7 @@ class SameImages {
   explicit SameImages(const Scene& scene) : scene_(scene) {}
 
   std::uint32_t first(std::uint32_t image) {
-    if (image == kNone) return kNone;
+    if (image == no_index) return no_index;
     const EncodedImage& encoded = scene_.images[image];
     if (!encoded.converted_from) {
       const std::string_view content(reinterpret_cast<const char*>(encoded.bytes.data()), encoded.bytes.size());
@@ -186,7 +186,7 @@ std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<Imag
   for (std::size_t first = 0; first < jobs.size();) {
     progress.next("making images, " + std::to_string(first) + " of " + std::to_string(jobs.size()) + " done");
     std::size_t end = first;
-    for (std::uint64_t texels = 0; end < jobs.size() && (end == first || texels < kTexelsAtOnce); ++end) {
+    for (std::uint64_t texels = 0; end < jobs.size() && (end == first || texels < texels_at_once); ++end) {
       texels += claimed_texels(scene, jobs[end].image);
     }
     tbb::parallel_for(first, end,

@@ -13,7 +13,7 @@
 namespace chandelier::baker {
 namespace {
 
-/// The number of the mesh's record in the pack, or kNone.
+/// The number of the mesh's record in the pack, or no_index.
 std::uint32_t record_of(const MeshInstance& instance, const std::vector<MeshRecords>& meshes) {
   return is_mirrored(instance) ? meshes[instance.mesh].mirrored : meshes[instance.mesh].plain;
 }
@@ -28,7 +28,7 @@ pack::Instance instance_record(const MeshInstance& instance, std::uint32_t mesh,
   }
   out.node = instance.node;
   out.skin = instance.skin;
-  out.dynamic = instance.node != kNone || instance.skin != kNone;
+  out.dynamic = instance.node != no_index || instance.skin != no_index;
   out.shadowless = instance.shadowless;
   out.name = strings.add(instance.name);
   return out;
@@ -76,13 +76,13 @@ void check_finite(const pack::BatchInstance& record, const std::string& where) {
 /// A node costs a file few bytes, and each of its mesh's batches becomes a record: counted before any memory is taken.
 std::size_t count_batch_instances(const Scene& scene, const std::vector<MeshRecords>& meshes,
                                   const pack::Contents& pack) {
-  constexpr std::uint64_t kMost = 1ull << 28;
+  constexpr std::uint64_t most_batches = 1ull << 28;
   std::uint64_t count = 0;
   for (const MeshInstance& instance : scene.instances) {
     const std::uint32_t mesh = record_of(instance, meshes);
-    if (mesh != kNone) count += pack.meshes[mesh].batch_count;
-    if (count > kMost) {
-      fail(instance.where, "the instances up to here have more than " + std::to_string(kMost) + " batches (" +
+    if (mesh != no_index) count += pack.meshes[mesh].batch_count;
+    if (count > most_batches) {
+      fail(instance.where, "the instances up to here have more than " + std::to_string(most_batches) + " batches (" +
                                std::to_string(count) + ")");
     }
   }
@@ -103,7 +103,7 @@ void make_instances(const Scene& scene, const std::vector<MeshRecords>& meshes, 
   std::vector<const MeshInstance*> sources;
   for (const MeshInstance& instance : scene.instances) {
     const std::uint32_t mesh = record_of(instance, meshes);
-    if (mesh == kNone) continue;
+    if (mesh == no_index) continue;
     const std::uint32_t number = fit_u32(pack.instances.size(), "instances");
     pack.instances.push_back(instance_record(instance, mesh, strings));
     sources.push_back(&instance);

@@ -5,11 +5,11 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint8_t kEndOfImage = 0xD9, kFirstRestart = 0xD0, kStartOfImage = 0xD8, kTemporary = 0x01;
+constexpr std::uint8_t end_of_image = 0xD9, first_restart = 0xD0, start_of_image = 0xD8, temporary = 0x01;
 
 /// Markers without a length of their own.
 bool stands_alone(std::uint8_t marker) {
-  return (marker >= kFirstRestart && marker <= kStartOfImage) || marker == kTemporary;
+  return (marker >= first_restart && marker <= start_of_image) || marker == temporary;
 }
 
 /// Table B.1: SOF0 to SOF15, among which stand three others.
@@ -33,7 +33,7 @@ std::size_t find_marker(const std::vector<std::uint8_t>& bytes, Wanted wanted) {
       at += 2;
     } else if (wanted(marker)) {
       return at;
-    } else if (marker != kEndOfImage && at + 3 < bytes.size()) {
+    } else if (marker != end_of_image && at + 3 < bytes.size()) {
       at += 2 + u16_at(&bytes[at + 2]);
     } else {
       break;
@@ -45,7 +45,7 @@ std::size_t find_marker(const std::vector<std::uint8_t>& bytes, Wanted wanted) {
 }  // namespace
 
 bool is_whole_jpeg(const std::vector<std::uint8_t>& bytes) {
-  return find_marker(bytes, [](std::uint8_t marker) { return marker == kEndOfImage; }) < bytes.size();
+  return find_marker(bytes, [](std::uint8_t marker) { return marker == end_of_image; }) < bytes.size();
 }
 
 ClaimedSize jpeg_size(const std::vector<std::uint8_t>& bytes) {

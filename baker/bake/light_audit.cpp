@@ -19,11 +19,11 @@ namespace {
 
 using Numbers = std::vector<std::size_t>;  // of lights
 
-constexpr double kSphere_sr = 4 * 3.14159265358979323846;
-constexpr double kLumensPerWatt = 683;  // what glTF exporters take
-constexpr int kRays = 32;               // from a light that something makes suspicious
-constexpr double kSunlight_lx = 1e5;    // direct, at noon
-constexpr double kFixture_m = 0.3;      // no room is this small: what is nearer around a light is its lamp
+constexpr double sphere_sr = 4 * 3.14159265358979323846;
+constexpr double exporter_lumens_per_watt = 683;  // what glTF exporters take
+constexpr int rays = 32;                          // from a light that something makes suspicious
+constexpr double sunlight_lx = 1e5;               // direct, at noon
+constexpr double fixture_m = 0.3;                 // no room is this small: what is nearer around a light is its lamp
 
 struct Audit {
   const Scene& scene;
@@ -59,7 +59,7 @@ double brightest_cd(const pack::Light& light) {
 std::string default_of(double intensity) {
   if (intensity == 1) return "glTF's default";
   for (const int watts : {10, 100, 1000}) {
-    for (const double factor : {kLumensPerWatt / kSphere_sr, 1 / kSphere_sr, 1.0}) {
+    for (const double factor : {exporter_lumens_per_watt / sphere_sr, 1 / sphere_sr, 1.0}) {
       if (is_near(intensity, watts * factor, 1e-4)) return fmt::format("what Blender writes for {} W", watts);
     }
   }
@@ -93,22 +93,23 @@ struct Mixup {
   const char* count;
   const char* what;
 };
-constexpr std::array<Mixup, 5> kMixups = {{
-    {kLumensPerWatt * kLumensPerWatt, "watts_twice", "683 times too bright: power_w was turned to lumens twice"},
-    {kLumensPerWatt * kSphere_sr, "lumens_as_candela",
+constexpr std::array<Mixup, 5> mixups = {{
+    {exporter_lumens_per_watt * exporter_lumens_per_watt, "watts_twice",
+     "683 times too bright: power_w was turned to lumens twice"},
+    {exporter_lumens_per_watt * sphere_sr, "lumens_as_candela",
      "12.6 times too bright: they have lumens where glTF has candela"},
-    {kLumensPerWatt / kSphere_sr, "sphere_twice", "12.6 times too dark: power_w was divided by 4 pi twice"},
-    {kSphere_sr, "watts_as_candela", "54 times too dark: they have watts where glTF has candela"},
+    {exporter_lumens_per_watt / sphere_sr, "sphere_twice", "12.6 times too dark: power_w was divided by 4 pi twice"},
+    {sphere_sr, "watts_as_candela", "54 times too dark: they have watts where glTF has candela"},
     {1, "radiometric", "683 times too dark: they have watts per steradian where glTF has candela"},
 }};
 
 void audit_power(Audit& audit, const Numbers& placed) {
-  for (const Mixup& mixup : kMixups) {
+  for (const Mixup& mixup : mixups) {
     Numbers lights;
     for (const std::size_t i : placed) {
       const double power_w = audit.authored(i).power_w.value_or(0);
       if (power_w <= 0) continue;
-      const double lumens = kSphere_sr * audit.baked(i).intensity;
+      const double lumens = sphere_sr * audit.baked(i).intensity;
       if (is_near(lumens / power_w, mixup.lumens_per_watt, 2e-3)) lights.push_back(i);
     }
     audit.name(mixup.count, mixup.what, lights);
@@ -119,11 +120,11 @@ void audit_power(Audit& audit, const Numbers& placed) {
 /// nothing.
 std::optional<double> illuminance_lx(const pack::Contents& pack, const pack::Light& light) {
   std::vector<double> distances;
-  for (const glm::dvec3& way : directions_of(light, kRays)) {
+  for (const glm::dvec3& way : directions_of(light, rays)) {
     const double distance = cast_ray(pack, glm::dvec3(light.position_ws), way, pack::shadow_near_m(light)).distance_m;
     if (distance <= light.range_m) distances.push_back(distance);
   }
-  if (distances.size() < kRays / 2) return std::nullopt;
+  if (distances.size() < rays / 2) return std::nullopt;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   return brightest_cd(light) / (*middle * *middle);
@@ -134,10 +135,10 @@ Numbers brighter_than_sunlight(const Audit& audit, const Numbers& placed) {
   std::vector<std::uint8_t> found(placed.size(), 0);
   tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
     const pack::Light& light = audit.baked(placed[i]);
-    if (brightest_cd(light) < kSunlight_lx * kFixture_m * kFixture_m) return;
+    if (brightest_cd(light) < sunlight_lx * fixture_m * fixture_m) return;
     const std::optional<double> lux = illuminance_lx(audit.pack, light);
     // In a lamp of its own, a light may be as bright as this at its shade.
-    found[i] = lux && *lux > kSunlight_lx && brightest_cd(light) / *lux > kFixture_m * kFixture_m;
+    found[i] = lux && *lux > sunlight_lx && brightest_cd(light) / *lux > fixture_m * fixture_m;
   });
   Numbers out;
   for (std::size_t i = 0; i < placed.size(); ++i) {
@@ -165,7 +166,7 @@ Numbers strong_minority(const Audit& audit, const Numbers& placed) {
   if (first == 0 || sorted.size() - first >= first) return {};
   const std::span all(sorted);
   const double ratio = median_cd(audit, all.subspan(first)) / median_cd(audit, all.first(first));
-  if (ratio < kLumensPerWatt / 2 || ratio > kLumensPerWatt * 2) return {};
+  if (ratio < exporter_lumens_per_watt / 2 || ratio > exporter_lumens_per_watt * 2) return {};
   return {sorted.begin() + static_cast<std::ptrdiff_t>(first), sorted.end()};
 }
 
@@ -210,33 +211,33 @@ void audit_units(Audit& audit, const Numbers& placed) {
 /// material) may be meant to be lit, unless it is as near as a bulb. What is nearer than shadow maps see casts none.
 bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
   const glm::dvec3 from(light.position_ws);
-  const std::vector<glm::dvec3> ways = directions_of(light, kRays);
+  const std::vector<glm::dvec3> ways = directions_of(light, rays);
   int inside = 0, kept = 0;
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const RayHit hit = cast_ray(pack, from, ways[i], pack::shadow_near_m(light));
     if (hit.shells_around > 0) ++inside;
     if (i == 1 && inside == 0) return false;  // two rays agree that it stands free
-    if (hit.closed_back && hit.distance_m <= light.range_m && (!hit.double_sided || hit.distance_m < kFixture_m)) {
+    if (hit.closed_back && hit.distance_m <= light.range_m && (!hit.double_sided || hit.distance_m < fixture_m)) {
       ++kept;
     }
   }
-  return inside > kRays / 2 && kept > kRays / 2;
+  return inside > rays / 2 && kept > rays / 2;
 }
 
 /// Lights whose shadow maps miss what is nearest to them: a shade, or a wall that they stand in.
 void audit_touching(Audit& audit, const Numbers& placed) {
-  constexpr double kLeast_m = pack::least_shadow_near_m / pack::shadow_near_per_distance;
+  constexpr double least_m = pack::least_shadow_near_m / pack::shadow_near_per_distance;
   Numbers touching;
   for (const std::size_t i : placed) {
     pack::Light close = audit.baked(i);
-    if (close.shadowless || close.dynamic || !(close.nearest_caster_m < kLeast_m)) continue;
-    close.range_m = static_cast<float>(kLeast_m);
+    if (close.shadowless || close.dynamic || !(close.nearest_caster_m < least_m)) continue;
+    close.range_m = static_cast<float>(least_m);
     close.bounds_center_ws = close.position_ws;
     close.bounds_radius_m = close.range_m;
     if (reaches_anything(audit.pack, close)) touching.push_back(i);  // so it is in the cone
   }
   audit.name("touching_a_surface",
-             fmt::format("within {:.2g} mm of a surface, which may cast no shadow from their light", 1000 * kLeast_m),
+             fmt::format("within {:.2g} mm of a surface, which may cast no shadow from their light", 1000 * least_m),
              touching);
 }
 

@@ -15,11 +15,11 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr int kBins = 16;
-constexpr int kKeys = 4;                 // x, y, z, and the radius's logarithm
-constexpr int kMostUneven = 64;          // splits in a row before halving: no tree is deeper than this and log2 n
-constexpr std::size_t kParallel = 2048;  // lights that are worth a task
-constexpr std::size_t kRefineSteps = 8;  // of a node's sphere
+constexpr int bin_count = 16;
+constexpr int keys = 4;                  // x, y, z, and the radius's logarithm
+constexpr int most_uneven = 64;          // splits in a row before halving: no tree is deeper than this and log2 n
+constexpr std::size_t parallel = 2048;   // lights that are worth a task
+constexpr std::size_t refine_steps = 8;  // of a node's sphere
 
 struct Item {
   Sphere sphere;
@@ -62,7 +62,7 @@ struct Split {
   double low = 0, scale = 0;
 
   int bin_of(const Item& item) const {
-    return std::clamp(static_cast<int>((key_of(item, key) - low) * scale), 0, kBins - 1);
+    return std::clamp(static_cast<int>((key_of(item, key) - low) * scale), 0, bin_count - 1);
   }
 };
 
@@ -73,16 +73,16 @@ Split split_by(int key, Items items) {
     least = std::min(least, key_of(item, key));
     most = std::max(most, key_of(item, key));
   }
-  Split split{.key = key, .low = least, .scale = kBins / (most - least)};
+  Split split{.key = key, .low = least, .scale = bin_count / (most - least)};
   if (!std::isfinite(split.scale)) return split;
-  std::array<Extent, kBins> bins, above;
+  std::array<Extent, bin_count> bins, above;
   for (const Item& item : items) bins[static_cast<std::size_t>(split.bin_of(item))].add(item);
-  for (std::size_t i = kBins - 1; i > 0; --i) {
+  for (std::size_t i = bin_count - 1; i > 0; --i) {
     above[i - 1] = above[i];
     above[i - 1].add(bins[i]);
   }
   Extent below;
-  for (std::size_t i = 0; i + 1 < kBins; ++i) {
+  for (std::size_t i = 0; i + 1 < bin_count; ++i) {
     below.add(bins[i]);
     if (below.count == 0 || above[i].count == 0) continue;
     const double cost = below.cost() + above[i].cost();
@@ -94,7 +94,7 @@ Split split_by(int key, Items items) {
 /// Puts the items of the first half in front, and returns how many they are. Stable, so that results repeat.
 std::size_t partition(Items items, int depth) {
   Split best;
-  for (int key = 0; key < kKeys && depth < kMostUneven; ++key) {
+  for (int key = 0; key < keys && depth < most_uneven; ++key) {
     const Split split = split_by(key, items);
     if (split.cost < best.cost) best = split;
   }
@@ -117,7 +117,7 @@ double radius_around(const glm::dvec3& center, Items items, const Item*& farthes
 Sphere sphere_around(Items items, const Sphere& guess) {
   Sphere best = guess;
   glm::dvec3 center = guess.center;
-  for (std::size_t step = 1; step <= kRefineSteps; ++step) {
+  for (std::size_t step = 1; step <= refine_steps; ++step) {
     const Item* farthest = nullptr;
     const double radius = radius_around(center, items, farthest);
     if (radius < best.radius) best = {center, radius};
@@ -145,7 +145,7 @@ Sphere build(Items items, std::size_t first, int depth, std::span<pack::LightBvh
   Sphere left, right;
   const auto build_left = [&] { left = build(items.first(half), first + 1, depth + 1, nodes); };
   const auto build_right = [&] { right = build(items.subspan(half), first + 2 * half, depth + 1, nodes); };
-  if (items.size() >= kParallel) {
+  if (items.size() >= parallel) {
     tbb::parallel_invoke(build_left, build_right);
   } else {
     build_left();

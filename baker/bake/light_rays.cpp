@@ -153,7 +153,7 @@ RayHit cast_ray(const pack::Contents& pack, const glm::dvec3& from, const glm::d
 }
 
 std::vector<glm::dvec3> directions_of(const pack::Light& light, int count) {
-  constexpr double kGoldenAngle = 2.399963229728653;  // a Fibonacci spiral
+  constexpr double golden_angle = 2.399963229728653;  // a Fibonacci spiral
   const double narrowest = light.type == pack::LightType::spot ? light.outer_cone_cos : -1;
   const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction_ws));
   const glm::dvec3 side =
@@ -161,7 +161,7 @@ std::vector<glm::dvec3> directions_of(const pack::Light& light, int count) {
   const glm::dvec3 other = glm::cross(axis, side);
   std::vector<glm::dvec3> out;
   for (int i = 0; i < count; ++i) {
-    const double cosine = 1 - (1 - narrowest) * (i + 0.5) / count, turn = kGoldenAngle * (i + 1);
+    const double cosine = 1 - (1 - narrowest) * (i + 0.5) / count, turn = golden_angle * (i + 1);
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     out.push_back(axis * cosine + (side * std::cos(turn) + other * std::sin(turn)) * sine);
   }

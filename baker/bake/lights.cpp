@@ -50,7 +50,7 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     out.inner_cone_cos = 1;
     out.outer_cone_cos = -1;
     out.priority = light.priority;
-    out.dynamic = light.dynamic || light.node != kNone;
+    out.dynamic = light.dynamic || light.node != no_index;
     out.unclustered = light.unclustered;
     out.shadowless = light.shadowless;
     out.radius_m = light.radius_m;

@@ -144,16 +144,17 @@ class CreaseNormals {
 /// far as a short look finds out: vertices are welded later.
 template <typename NormalOf>
 void set_normals(Primitive& primitive, NormalOf normal_of) {
-  constexpr int kLook = 8;
-  std::vector<std::uint32_t> newest(primitive.vertices.size(), kNone), older;
+  constexpr int look_ahead = 8;
+  std::vector<std::uint32_t> newest(primitive.vertices.size(), no_index), older;
   std::vector<Vertex> vertices;
   std::vector<SkinVertex> skin_vertices;
   for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
     const std::uint32_t from = primitive.indices[i];
     const glm::vec3 normal = normal_of(i);
     std::uint32_t copy = newest[from];
-    for (int look = 0; look < kLook && copy != kNone && vertices[copy].normal_ls != normal; ++look) copy = older[copy];
-    if (copy == kNone || vertices[copy].normal_ls != normal) {
+    for (int look = 0; look < look_ahead && copy != no_index && vertices[copy].normal_ls != normal; ++look)
+      copy = older[copy];
+    if (copy == no_index || vertices[copy].normal_ls != normal) {
       copy = static_cast<std::uint32_t>(vertices.size());
       older.push_back(newest[from]);
       newest[from] = copy;

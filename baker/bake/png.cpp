@@ -16,8 +16,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kSignatureBytes = 8;
-constexpr std::uint8_t kGrey = 0, kRgb = 2, kPalette = 3, kGreyAlpha = 4, kRgba = 6;
+constexpr std::size_t signature_bytes = 8;
+constexpr std::uint8_t grey_type = 0, rgb_type = 2, palette_type = 3, grey_alpha_type = 4, rgba_type = 6;
 
 std::uint32_t u32_at(const std::uint8_t* bytes) {
   return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
@@ -55,8 +55,8 @@ std::vector<Chunk> split_chunks(const Bytes& bytes, const std::string& where, st
     note(damage, what);
     return out;
   };
-  if (bytes.size() < kSignatureBytes) return cut_short();
-  for (std::size_t at = kSignatureBytes;;) {
+  if (bytes.size() < signature_bytes) return cut_short();
+  for (std::size_t at = signature_bytes;;) {
     if (bytes.size() - at < 8) return cut_short();
     const std::size_t size = u32_at(&bytes[at]), left = bytes.size() - at - 8;
     const std::string type(&bytes[at + 4], &bytes[at + 4] + 4);
@@ -85,9 +85,9 @@ std::string fault(const std::string& what, std::uint64_t value) {
 
 /// Table 11.1: the bit depths of a colour type.
 bool allows(std::uint8_t color, std::uint8_t depth) {
-  if (color == kGrey) return depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16;
-  if (color == kPalette) return depth == 1 || depth == 2 || depth == 4 || depth == 8;
-  return (color == kRgb || color == kGreyAlpha || color == kRgba) && (depth == 8 || depth == 16);
+  if (color == grey_type) return depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16;
+  if (color == palette_type) return depth == 1 || depth == 2 || depth == 4 || depth == 8;
+  return (color == rgb_type || color == grey_alpha_type || color == rgba_type) && (depth == 8 || depth == 16);
 }
 
 Header read_header(const Chunk& chunk, const std::string& where) {
@@ -104,17 +104,17 @@ Header read_header(const Chunk& chunk, const std::string& where) {
 
 /// Bytes of each row of the filtered image: of all rows, or of the seven passes' (Table 8.1).
 std::vector<std::size_t> row_sizes(const Header& header) {
-  const std::size_t channels = header.color == kRgba        ? 4
-                               : header.color == kRgb       ? 3
-                               : header.color == kGreyAlpha ? 2
-                                                            : 1;
+  const std::size_t channels = header.color == rgba_type         ? 4
+                               : header.color == rgb_type        ? 3
+                               : header.color == grey_alpha_type ? 2
+                                                                 : 1;
   const auto row_bytes = [&](std::size_t width) { return 1 + (width * channels * header.depth + 7) / 8; };
   if (!header.interlaced) return std::vector<std::size_t>(header.height, row_bytes(header.width));
-  static constexpr std::size_t kPasses[7][4] = {
+  static constexpr std::size_t passes[7][4] = {
       {0, 8, 0, 8}, {4, 8, 0, 8}, {0, 4, 4, 8}, {2, 4, 0, 4},
       {0, 2, 2, 4}, {1, 2, 0, 2}, {0, 1, 1, 2}};  // first x, step, first y, step
   std::vector<std::size_t> out;
-  for (const auto& [x, x_step, y, y_step] : kPasses) {
+  for (const auto& [x, x_step, y, y_step] : passes) {
     const std::size_t width = (header.width + x_step - 1 - x) / x_step;
     const std::size_t height = (header.height + y_step - 1 - y) / y_step;
     if (width > 0) out.insert(out.end(), height, row_bytes(width));
@@ -193,14 +193,14 @@ Rows check_rows(const std::vector<std::size_t>& sizes, const std::vector<Chunk>&
 
 /// The good rows again, and each other as the one above it.
 Bytes mended_rows(const std::vector<std::size_t>& sizes, std::size_t good, const std::vector<Chunk>& data) {
-  constexpr std::uint8_t kUp = 2;  // filter: what is added to the row above
+  constexpr std::uint8_t up_filter = 2;  // filter: what is added to the row above
   Inflater inflater(data);
   Bytes out, row, packed(std::size_t{1} << 16);
   z_stream stream = {};
   if (deflateInit(&stream, Z_BEST_SPEED) != Z_OK) throw std::bad_alloc();
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     row.assign(sizes[i], 0);
-    row[0] = kUp;
+    row[0] = up_filter;
     if (i < good) inflater.read(row, i);
     stream.next_in = row.data();
     stream.avail_in = static_cast<uInt>(row.size());
@@ -217,16 +217,16 @@ Bytes mended_rows(const std::vector<std::size_t>& sizes, std::size_t good, const
 
 /// Whether the texels need a chunk that is not image data.
 bool is_needed(const Chunk& chunk, const Header& header) {
-  if (chunk.type == "PLTE") return header.color == kPalette;  // else only a suggestion
-  return chunk.type == "tRNS" && header.color != kGreyAlpha && header.color != kRgba;
+  if (chunk.type == "PLTE") return header.color == palette_type;  // else only a suggestion
+  return chunk.type == "tRNS" && header.color != grey_alpha_type && header.color != rgba_type;
 }
 
 bool fits(const Chunk& chunk, const Header& header, std::size_t palette_colors) {
   const bool palette = chunk.type == "PLTE";
   const std::size_t most = std::size_t{1} << header.depth;
   if (palette) return palette_colors == 0 && chunk.size > 0 && chunk.size % 3 == 0 && chunk.size / 3 <= most;
-  if (header.color == kPalette) return chunk.size > 0 && chunk.size <= palette_colors;
-  return chunk.size == (header.color == kGrey ? 2u : 6u);
+  if (header.color == palette_type) return chunk.size > 0 && chunk.size <= palette_colors;
+  return chunk.size == (header.color == grey_type ? 2u : 6u);
 }
 
 /// With a checksum that is right.
@@ -259,9 +259,9 @@ void append_data(const Header& header, const std::vector<Chunk>& data, std::size
   note(damage, rows.fault);
   if (has_no_picture({header.width, header.height}, file_bytes)) fail(where, damage);  // before it takes gigabytes
   const Bytes mended = mended_rows(sizes, rows.good, data);
-  constexpr std::size_t kMostInChunk = std::size_t{1} << 30;
-  for (std::size_t at = 0; at < mended.size(); at += kMostInChunk) {
-    append("IDAT", &mended[at], std::min(kMostInChunk, mended.size() - at), out);
+  constexpr std::size_t most_in_chunk = std::size_t{1} << 30;
+  for (std::size_t at = 0; at < mended.size(); at += most_in_chunk) {
+    append("IDAT", &mended[at], std::min(most_in_chunk, mended.size() - at), out);
   }
 }
 
@@ -271,7 +271,7 @@ std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, 
                                         std::string& damage) {
   const std::vector<Chunk> chunks = split_chunks(bytes, where, damage);
   const Header header = read_header(chunks[0], where);
-  Bytes out(bytes.begin(), bytes.begin() + kSignatureBytes);
+  Bytes out(bytes.begin(), bytes.begin() + signature_bytes);
   append(chunks[0], out);
   std::vector<Chunk> data;
   std::size_t palette_colors = 0;
@@ -289,16 +289,18 @@ std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, 
     transparent = transparent || chunk.type == "tRNS";
     append(chunk, out);
   }
-  if (header.color == kPalette && palette_colors == 0)
-    damaged(where, "no palette before its data, colour type", kPalette);
+  if (header.color == palette_type && palette_colors == 0)
+    damaged(where, "no palette before its data, colour type", palette_type);
   append_data(header, data, bytes.size(), where, damage, out);
   append("IEND", nullptr, 0, out);
   return out;
 }
 
 ClaimedSize png_size(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::size_t kWidth = kSignatureBytes + 8, kHeight = kWidth + 4;  // IHDR is the first chunk
-  return bytes.size() < kHeight + 4 ? ClaimedSize() : ClaimedSize{u32_at(&bytes[kWidth]), u32_at(&bytes[kHeight])};
+  constexpr std::size_t width_offset = signature_bytes + 8,
+                        height_offset = width_offset + 4;  // IHDR is the first chunk
+  return bytes.size() < height_offset + 4 ? ClaimedSize()
+                                          : ClaimedSize{u32_at(&bytes[width_offset]), u32_at(&bytes[height_offset])};
 }
 
 }  // namespace chandelier::baker

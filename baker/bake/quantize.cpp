@@ -42,10 +42,10 @@ double uv_scale(const UvTransform& transform) {
 
 Needs needs_of(const Material& material) {
   Needs needs;
-  needs.tangent = material.normal.texture != kNone;
+  needs.tangent = material.normal.texture != no_index;
   for (const TextureUse* use : {&material.base_color, &material.metallic_roughness, &material.normal,
                                 &material.occlusion, &material.emissive_map}) {
-    if (use->texture == kNone) continue;
+    if (use->texture == no_index) continue;
     double& scale = use->uv1 ? needs.uv1 : needs.uv0;
     scale = std::max({scale, uv_scale(use->uv_transform), 1e-30});  // a scale of 0 reads too
   }
@@ -58,9 +58,9 @@ class Grid {
   explicit Grid(double step) : step_(step), per_step_(step > 0 ? 1 / step : 0) {}
 
   float snap(float value) const {
-    constexpr double kMostSteps = 16777216;  // above, floats themselves are multiples
+    constexpr double most_steps = 16777216;  // above, floats themselves are multiples
     const double steps = double{value} * per_step_;
-    if (step_ == 0 || !(std::abs(steps) < kMostSteps)) return value;
+    if (step_ == 0 || !(std::abs(steps) < most_steps)) return value;
     return static_cast<float>(std::nearbyint(steps) * step_) + 0.0f;  // no negative zero
   }
 
@@ -174,7 +174,7 @@ std::vector<Stretch> stretches_of(const Scene& scene) {
   std::vector<Stretch> out;
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
-    const Stretch above = node.parent == kNone ? Stretch{.most = 1} : out[node.parent];
+    const Stretch above = node.parent == no_index ? Stretch{.most = 1} : out[node.parent];
     const double own = std::max(largest_scale(node.parent_from_local), keys[n]);
     out.push_back({above.world * node.parent_from_local, above.grows || keys[n] >= 0, above.most * own});
   }
@@ -183,7 +183,7 @@ std::vector<Stretch> stretches_of(const Scene& scene) {
 
 double scale_of(const MeshInstance& instance, const std::vector<Stretch>& nodes) {
   const double rest = largest_scale(instance.world_from_local);
-  if (instance.node == kNone || !nodes[instance.node].grows) return rest;
+  if (instance.node == no_index || !nodes[instance.node].grows) return rest;
   const Stretch& node = nodes[instance.node];
   if (node.world == instance.world_from_local) return std::max(rest, node.most);
   return std::max(rest, node.most * largest_scale(glm::inverse(node.world) * instance.world_from_local));  // a copy
@@ -203,7 +203,7 @@ std::vector<double> largest_scales(const Scene& scene) {
   for (const MeshInstance& instance : scene.instances) {
     double& largest = out[instance.mesh];
     largest = std::max(largest, scale_of(instance, nodes));
-    if (instance.skin == kNone) continue;
+    if (instance.skin == no_index) continue;
     for (const Joint& joint : scene.skins[instance.skin].joints) largest = std::max(largest, scale_of(joint, nodes));
   }
   return out;
@@ -228,9 +228,9 @@ double largest_scale(const glm::dmat4& matrix) {
 }
 
 double grid_step(double error_m, double scale, double extent_ls) {
-  constexpr double kSteps = 16384;
+  constexpr double step_count = 16384;
   // Half a step along each axis: √3/2 of it in all. The margin covers rounding here and in the instance's floats.
-  const double most = std::min(2 * error_m / (std::sqrt(3.0) * scale) * (1 - 1e-6), extent_ls / kSteps);
+  const double most = std::min(2 * error_m / (std::sqrt(3.0) * scale) * (1 - 1e-6), extent_ls / step_count);
   if (!(most >= 1e-30) || !std::isfinite(most)) return 0;
   return std::exp2(std::floor(std::log2(most)));
 }

@@ -14,7 +14,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr double kCoarse_m = 1e-3;  // floats that are further apart than this are worth a word
+constexpr double coarse_m = 1e-3;  // floats that are further apart than this are worth a word
 
 struct Box {
   glm::dvec3 low{INFINITY}, high{-INFINITY};
@@ -51,13 +51,13 @@ bool is_float(double value) {
 }
 
 bool is_far(const glm::dvec3& place) {
-  return std::max({spacing(place.x), spacing(place.y), spacing(place.z)}) > kCoarse_m;
+  return std::max({spacing(place.x), spacing(place.y), spacing(place.z)}) > coarse_m;
 }
 
 /// Of a far place: every coordinate for which floats are coarse is one all the same.
 bool is_of_floats(const glm::dvec3& place) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (spacing(place[axis]) > kCoarse_m && !is_float(place[axis])) return false;
+    if (spacing(place[axis]) > coarse_m && !is_float(place[axis])) return false;
   }
   return true;
 }
@@ -76,7 +76,7 @@ bool is_coarse(const glm::dvec3& place) {
   if (!is_of_floats(place)) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const double mm = 1000 * place[axis];
-    if (spacing(place[axis]) > kCoarse_m && std::abs(mm - std::nearbyint(mm)) > 1e-3) return true;
+    if (spacing(place[axis]) > coarse_m && std::abs(mm - std::nearbyint(mm)) > 1e-3) return true;
   }
   return false;
 }
@@ -105,16 +105,16 @@ void warn_of_rounding(const Scene& scene, const std::vector<Box>& boxes, Warning
     const Box& box = boxes[instance.mesh];
     const double step = box.is_empty() ? 0 : spacing(box.farthest());
     const double step_m = step * largest_scale(instance.world_from_local);
-    const bool coarse_mesh = step_m > kCoarse_m && step > 1e-4 * box.longest_side();
+    const bool coarse_mesh = step_m > coarse_m && step > 1e-4 * box.longest_side();
     if (coarse_mesh || (rounded && is_coarse(place)))
       note(instance.name, instance.where, coarse_mesh ? step_m : apart(place));
   }
   for (const Light& light : scene.lights) {
     if (rounded && is_coarse(light.position_ws)) note(light.name, light.where, apart(light.position_ws));
   }
-  const std::string what = fmt::format(
-      "so far from the origin that the file's floats are up to {:.3g} mm apart: the file has rounded them",
-      1000 * coarsest_m);
+  const std::string what =
+      fmt::format("so far from the origin that the file's floats are up to {:.3g} mm apart: the file has rounded them",
+                  1000 * coarsest_m);
   for (const std::string& name : names) warnings.add("scene", "positions", what, name);
 }
 
@@ -126,7 +126,7 @@ int recentre_meshes(Scene& scene, const std::vector<Box>& boxes) {
     if (!boxes[m].is_empty()) origins[m] = pack::scene_origin(boxes[m].low, boxes[m].high);
   }
   for (const MeshInstance& instance : scene.instances) {
-    if (instance.skin != kNone) origins[instance.mesh] = glm::dvec3(0);
+    if (instance.skin != no_index) origins[instance.mesh] = glm::dvec3(0);
   }
   int count = 0;
   for (std::size_t m = 0; m < origins.size(); ++m) {
@@ -163,13 +163,13 @@ Box box_of(const Scene& scene, const std::vector<Box>& boxes) {
 /// Nodes without a parent carry all others; where an animation moves one, its keys say where it is.
 void move_nodes(Scene& scene, const glm::dvec3& origin) {
   for (Node& node : scene.nodes) {
-    if (node.parent != kNone) continue;
+    if (node.parent != no_index) continue;
     node.parent_from_local = moved(-origin) * node.parent_from_local;
     node.translation -= origin;
   }
   for (Animation& animation : scene.animations) {
     for (AnimationChannel& channel : animation.channels) {
-      if (channel.path != AnimationPath::translation || scene.nodes[channel.node].parent != kNone) continue;
+      if (channel.path != AnimationPath::translation || scene.nodes[channel.node].parent != no_index) continue;
       const bool cubic = channel.interpolation == Interpolation::cubic_spline;  // tangent, value, tangent
       for (std::size_t i = 0; i < channel.values.size(); ++i) {
         if (cubic && i / 3 % 3 != 1) continue;

@@ -25,8 +25,8 @@ namespace chandelier::baker::sah {
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 
-constexpr std::size_t kMostBins = 32;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t most_bins = 32;
+constexpr float infinite = std::numeric_limits<float>::infinity();
 
 inline Float4 min(Float4 a, Float4 b) {
   return a < b ? a : b;
@@ -36,8 +36,8 @@ inline Float4 max(Float4 a, Float4 b) {
 }
 
 struct Box {
-  Float4 low = {kInfinity, kInfinity, kInfinity, 0};
-  Float4 high = {-kInfinity, -kInfinity, -kInfinity, 0};
+  Float4 low = {infinite, infinite, infinite, 0};
+  Float4 high = {-infinite, -infinite, -infinite, 0};
 
   void add(Float4 other_low, Float4 other_high) {
     low = min(low, other_low);
@@ -102,7 +102,7 @@ struct Bin {
   void add(const Bin& other) { add({other.low, other.high}, other.items); }
 };
 
-using AxisBins = std::array<Bin, kMostBins>;
+using AxisBins = std::array<Bin, most_bins>;
 
 inline std::array<AxisBins, 3> fill_bins(std::span<const BvhItem> items, const Binning& binning, std::size_t stride) {
   std::array<AxisBins, 3> axes;

@@ -164,7 +164,7 @@ ShellCounts find_shells(PackedMesh& mesh, const std::vector<Material>& materials
     double volume = 0;  // six times
   };
   std::vector<Shell> shells;
-  std::vector<std::uint32_t> shell_of(triangles.size(), kNone);  // of roots
+  std::vector<std::uint32_t> shell_of(triangles.size(), no_index);  // of roots
   ShellCounts counts;
   for_each_triangle(mesh, [&](std::uint32_t number, const PackedPrimitive& primitive, std::size_t t) {
     const std::uint32_t root = forest.root(number);

@@ -57,11 +57,11 @@ glm::vec3 across(const glm::vec3& normal, const glm::dvec3& sum) {
 /// Vertices by the side on which they are used: number of a vertex's copy, per vertex and side.
 class SidedVertices {
  public:
-  explicit SidedVertices(const Primitive& in) : in_(in), number_(2 * in.vertices.size(), kNone) {}
+  explicit SidedVertices(const Primitive& in) : in_(in), number_(2 * in.vertices.size(), no_index) {}
 
   std::uint32_t use(std::uint32_t vertex, bool mirrored) {
     std::uint32_t& number = number_[2 * std::size_t{vertex} + mirrored];
-    if (number == kNone) {
+    if (number == no_index) {
       number = static_cast<std::uint32_t>(vertices.size());
       vertices.push_back(in_.vertices[vertex]);
       if (!in_.skin_vertices.empty()) skin_vertices.push_back(in_.skin_vertices[vertex]);

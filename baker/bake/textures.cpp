@@ -91,7 +91,7 @@ void add_maps(const Material& material, Textures& textures, pack::Material& out)
               {material.occlusion, out.occlusion_texture, ImageUse::data},
               {material.emissive_map, out.emissive_texture, ImageUse::color}};
   for (std::uint32_t i = 0; i < 5; ++i) {
-    if (maps[i].from.texture == kNone) continue;
+    if (maps[i].from.texture == no_index) continue;
     maps[i].to = textures.use(maps[i].from, maps[i].use, i == 0 ? cutoff : 0);
     out.uv1_mask |= std::uint32_t{maps[i].from.uv1} << i;
   }
@@ -123,7 +123,7 @@ std::vector<ImageRequest> make_materials(const Scene& scene, bool textures, Stri
     pack::Material out = record_of(material, strings);
     if (textures) {
       add_maps(material, used, out);
-    } else if (material.emissive_map.texture != kNone) {
+    } else if (material.emissive_map.texture != no_index) {
       out.emissive = glm::vec3(0);
     }
     pack.materials.push_back(out);

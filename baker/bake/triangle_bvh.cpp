@@ -21,7 +21,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kTaskBatches = 64;
+constexpr std::size_t task_batches = 64;
 
 struct Tree {
   BvhPlace place;
@@ -59,9 +59,9 @@ void shape_tree(const pack::Contents& pack, const pack::Mesh& mesh, Tree& tree) 
     first_items[b] = next;
     next += triangle_count(batches[b]);
   }
-  std::vector<Treelets> parts((batches.size() + kTaskBatches - 1) / kTaskBatches);
+  std::vector<Treelets> parts((batches.size() + task_batches - 1) / task_batches);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    for (std::size_t b = part * kTaskBatches; b < std::min(batches.size(), (part + 1) * kTaskBatches); ++b) {
+    for (std::size_t b = part * task_batches; b < std::min(batches.size(), (part + 1) * task_batches); ++b) {
       const std::span items = tree.items.subspan(first_items[b], triangle_count(batches[b]));
       for (std::uint32_t t = 0; t < items.size(); ++t) items[t] = item_of(pack, batches[b].first_index / 3 + t);
       shape_treelets(items, first_items[b], parts[part]);
@@ -76,8 +76,8 @@ std::uint32_t place_items(const pack::Contents& pack, std::vector<Tree>& trees) 
   for (std::size_t m = 0; m < trees.size(); ++m) {
     trees[m].place.first_item = static_cast<std::uint32_t>(items);
     items += triangle_count(pack, pack.meshes[m]);
-    if (items > kMostBvhItems) {
-      fail("scene", "has more triangles than triangle BVHs can hold (above " + std::to_string(kMostBvhItems) + ")");
+    if (items > most_bvh_items) {
+      fail("scene", "has more triangles than triangle BVHs can hold (above " + std::to_string(most_bvh_items) + ")");
     }
   }
   return static_cast<std::uint32_t>(items);

@@ -19,7 +19,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // batch instances: some thousand triangles
+constexpr std::size_t block_size = 64;  // batch instances: some thousand triangles
 
 /// The grid around the static batch instances; none where there are none.
 std::vector<pack::VoxelGrid> grid_of(const VoxelSettings& settings, const pack::Contents& pack) {
@@ -37,10 +37,10 @@ std::vector<pack::VoxelGrid> grid_of(const VoxelSettings& settings, const pack::
 
 std::vector<VoxelBlock> make_blocks(const pack::Contents& pack, const Grid& grid, pack::VoxelMode mode) {
   const std::size_t count = pack.batch_instances.size();
-  std::vector<VoxelBlock> blocks((count + kBlock - 1) / kBlock);
+  std::vector<VoxelBlock> blocks((count + block_size - 1) / block_size);
   std::atomic<std::uint64_t> clipped_triangles = 0;
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    for (std::size_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i) {
+    for (std::size_t i = b * block_size; i < std::min(count, (b + 1) * block_size); ++i) {
       const pack::BatchInstance& record = pack.batch_instances[i];
       if (!is_static(pack, record) || !pack::throws_shadow(pack, record)) continue;
       const PlacedBatch placed(pack, static_cast<std::uint32_t>(i));

@@ -10,8 +10,8 @@
 
 namespace chandelier::baker {
 
-constexpr std::uint32_t kMostVoxelsOnAxis = 1024;
-constexpr std::uint32_t kMostVoxels = 1u << 24;  // in a grid: 128 MiB of records
+constexpr std::uint32_t most_voxels_on_axis = 1024;
+constexpr std::uint32_t most_voxels = 1u << 24;  // in a grid: 128 MiB of records
 
 /// A pack's grid in double precision, where cell numbers times cell sizes are exact.
 struct Grid {

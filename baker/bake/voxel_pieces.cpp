@@ -7,7 +7,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr int kMostCells = 2;  // of a triangle that is not always drawn (voxel paper §4)
+constexpr int most_cells = 2;  // of a triangle that is not always drawn (voxel paper §4)
 
 struct CellRange {
   glm::ivec3 low, high;  // both included
@@ -26,9 +26,9 @@ CellRange cells_of(const Grid& grid, const glm::dvec3& box_min, const glm::dvec3
   return range;
 }
 
-/// The cells that a triangle overlaps, or kMostCells + 1 where they are more.
+/// The cells that a triangle overlaps, or most_cells + 1 where they are more.
 struct Overlaps {
-  std::array<std::uint32_t, kMostCells> cells{};
+  std::array<std::uint32_t, most_cells> cells{};
   int count = 0;
 };
 
@@ -40,8 +40,8 @@ void test_cells(const Triangle& triangle, const Grid& grid, const CellRange& ran
         const glm::dvec3 low(grid.plane(0, cell.x), grid.plane(1, cell.y), grid.plane(2, cell.z));
         const glm::dvec3 high(grid.plane(0, cell.x + 1), grid.plane(1, cell.y + 1), grid.plane(2, cell.z + 1));
         if (!may_overlap(triangle, low, high, slack)) continue;
-        if (out.count == kMostCells) {
-          out.count = kMostCells + 1;
+        if (out.count == most_cells) {
+          out.count = most_cells + 1;
           return;
         }
         out.cells[static_cast<std::size_t>(out.count++)] = grid.number(cell);
@@ -56,9 +56,9 @@ Overlaps overlaps_of(const Triangle& triangle, const Grid& grid, double slack) {
   const CellRange range = cells_of(grid, low, high, slack);
   const glm::ivec3 size = range.size();
   Overlaps out;
-  if (std::max({size.x, size.y, size.z}) > kMostCells) {  // in one piece, so it has a point in each layer
-    out.count = kMostCells + 1;
-  } else if (size.x * size.y * size.z <= kMostCells) {  // the same: in both
+  if (std::max({size.x, size.y, size.z}) > most_cells) {  // in one piece, so it has a point in each layer
+    out.count = most_cells + 1;
+  } else if (size.x * size.y * size.z <= most_cells) {  // the same: in both
     out.cells = {grid.number(range.low), grid.number(range.high)};
     out.count = size.x * size.y * size.z;
   } else {
@@ -105,8 +105,8 @@ void bin_separate(const PlacedBatch& placed, const Grid& grid, VoxelBlock& block
   entries.clear();
   for (std::uint32_t t = 0; t < placed.triangle_count(); ++t) {
     const Overlaps overlaps = overlaps_of(placed.triangle_ws(t), grid, slack);
-    if (overlaps.count > kMostCells) entries.push_back(std::uint64_t{grid.cell_count()} << 32 | t);
-    for (int i = 0; i < overlaps.count && overlaps.count <= kMostCells; ++i) {
+    if (overlaps.count > most_cells) entries.push_back(std::uint64_t{grid.cell_count()} << 32 | t);
+    for (int i = 0; i < overlaps.count && overlaps.count <= most_cells; ++i) {
       entries.push_back(std::uint64_t{overlaps.cells[static_cast<std::size_t>(i)]} << 32 | t);
     }
   }

@@ -10,10 +10,10 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kFileHeader = 12, kChunkHeader = 8;
-constexpr std::uint8_t kExtendedAlpha = 0x10;  // of VP8X's first byte
-constexpr std::size_t kLosslessAlphaAt = 4;    // a byte of signature, 14 bits of width, 14 of height, then the bit
-constexpr std::uint8_t kLosslessAlpha = 0x10;
+constexpr std::size_t file_header = 12, chunk_header = 8;
+constexpr std::uint8_t extended_alpha = 0x10;  // of VP8X's first byte
+constexpr std::size_t lossless_alpha_at = 4;   // a byte of signature, 14 bits of width, 14 of height, then the bit
+constexpr std::uint8_t lossless_alpha = 0x10;
 
 std::uint32_t u32_at(const std::uint8_t* bytes) {
   return std::uint32_t{bytes[3]} << 24 | std::uint32_t{bytes[2]} << 16 | std::uint32_t{bytes[1]} << 8 | bytes[0];
@@ -26,23 +26,23 @@ bool is(const std::uint8_t* chunk, std::string_view type) {
 /// A chunk's bytes with its header and padding, as far as they are there.
 std::size_t size_of_chunk(const std::vector<std::uint8_t>& bytes, std::size_t at) {
   const std::size_t left = bytes.size() - at, size = u32_at(&bytes[at + 4]);
-  return std::min(left, kChunkHeader + size + size % 2);
+  return std::min(left, chunk_header + size + size % 2);
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> webp_without_alpha(const std::vector<std::uint8_t>& bytes) {
-  if (bytes.size() < kFileHeader) return bytes;
-  std::vector<std::uint8_t> out(bytes.begin(), bytes.begin() + kFileHeader);
-  for (std::size_t at = kFileHeader; bytes.size() - at >= kChunkHeader;) {
+  if (bytes.size() < file_header) return bytes;
+  std::vector<std::uint8_t> out(bytes.begin(), bytes.begin() + file_header);
+  for (std::size_t at = file_header; bytes.size() - at >= chunk_header;) {
     const std::size_t size = size_of_chunk(bytes, at);
     const auto chunk = bytes.begin() + static_cast<std::ptrdiff_t>(at);
     if (!is(&bytes[at], "ALPH")) {
-      const std::size_t data = out.size() + kChunkHeader;
+      const std::size_t data = out.size() + chunk_header;
       out.insert(out.end(), chunk, chunk + static_cast<std::ptrdiff_t>(size));
-      if (is(&bytes[at], "VP8X") && size > kChunkHeader) out[data] &= static_cast<std::uint8_t>(~kExtendedAlpha);
-      if (is(&bytes[at], "VP8L") && size > kChunkHeader + kLosslessAlphaAt) {
-        out[data + kLosslessAlphaAt] &= static_cast<std::uint8_t>(~kLosslessAlpha);
+      if (is(&bytes[at], "VP8X") && size > chunk_header) out[data] &= static_cast<std::uint8_t>(~extended_alpha);
+      if (is(&bytes[at], "VP8L") && size > chunk_header + lossless_alpha_at) {
+        out[data + lossless_alpha_at] &= static_cast<std::uint8_t>(~lossless_alpha);
       }
     }
     at += size;
@@ -53,8 +53,8 @@ std::vector<std::uint8_t> webp_without_alpha(const std::vector<std::uint8_t>& by
 }
 
 ClaimedSize webp_size(const std::vector<std::uint8_t>& bytes) {
-  if (bytes.size() < kFileHeader + kChunkHeader + 10) return {};
-  const std::uint8_t *chunk = &bytes[kFileHeader], *data = chunk + kChunkHeader;
+  if (bytes.size() < file_header + chunk_header + 10) return {};
+  const std::uint8_t *chunk = &bytes[file_header], *data = chunk + chunk_header;
   if (is(chunk, "VP8X")) {  // 24 bits each, less one
     return {(u32_at(data + 4) & 0xFFFFFF) + 1, (u32_at(data + 6) >> 8) + 1};
   }

@@ -100,9 +100,9 @@ std::span<const std::uint8_t> element_bytes(const Gltf& gltf, int view, std::uin
 /// Copies the elements together and puts sparse values in their places.
 void gather(const Gltf& gltf, const tinygltf::Accessor& accessor, std::size_t element, const std::string& where,
             Elements& out) {
-  constexpr std::size_t kMostZeros = std::size_t{1} << 22;  // a few bytes of a file can ask for any number
-  if (!out.data && accessor.count > kMostZeros) {
-    fail(where, "accessor without a buffer view has more than " + std::to_string(kMostZeros) + " elements (" +
+  constexpr std::size_t most_zeros = std::size_t{1} << 22;  // a few bytes of a file can ask for any number
+  if (!out.data && accessor.count > most_zeros) {
+    fail(where, "accessor without a buffer view has more than " + std::to_string(most_zeros) + " elements (" +
                     std::to_string(accessor.count) + ")");
   }
   out.own.resize(accessor.count * element);
@@ -271,13 +271,15 @@ std::vector<std::uint32_t> read_indices(const Gltf& gltf, int index, std::uint64
 }
 
 void for_blocks(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
-  constexpr std::size_t kBlock = 1024;  // of vertices: 60 KiB, which caches hold while each attribute passes over them
-  constexpr std::size_t kAtOnce = 16;   // blocks that one thread takes
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (count + kBlock - 1) / kBlock, kAtOnce), [&](const auto& range) {
-    for (std::size_t block = range.begin(); block < range.end(); ++block) {
-      work(block * kBlock, std::min(kBlock, count - block * kBlock));
-    }
-  });
+  constexpr std::size_t block_size =
+      1024;                            // of vertices: 60 KiB, which caches hold while each attribute passes over them
+  constexpr std::size_t at_once = 16;  // blocks that one thread takes
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (count + block_size - 1) / block_size, at_once),
+                    [&](const auto& range) {
+                      for (std::size_t block = range.begin(); block < range.end(); ++block) {
+                        work(block * block_size, std::min(block_size, count - block * block_size));
+                      }
+                    });
 }
 
 void FirstFault::note(std::size_t at) {

@@ -10,7 +10,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t kMostValues = 1ull << 28;  // of all animations: channels can share one accessor
+constexpr std::uint64_t most_values = 1ull << 28;  // of all animations: channels can share one accessor
 
 std::vector<float> read_times(const Gltf& gltf, int accessor, const std::string& where) {
   if (gltf.model.accessors[static_cast<std::size_t>(accessor)].componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
@@ -34,7 +34,7 @@ bool may_hold(AnimationPath path, const tinygltf::Accessor& accessor) {
 
 /// Makes quaternions unit length. Returns whether one was off by more than rounding.
 bool normalize_rotations(AnimationChannel& channel, const std::string& where) {
-  constexpr double kRounding = 0.01;  // 8-bit components
+  constexpr double rounding = 0.01;  // 8-bit components
   const bool cubic = channel.interpolation == Interpolation::cubic_spline;
   bool off = false;
   for (std::size_t key = 0; key < channel.times_s.size(); ++key) {
@@ -42,7 +42,7 @@ bool normalize_rotations(AnimationChannel& channel, const std::string& where) {
     const double length =
         std::sqrt(double{q[0]} * q[0] + double{q[1]} * q[1] + double{q[2]} * q[2] + double{q[3]} * q[3]);
     if (!(length > 1e-6)) fail(where, "rotation has no direction (key " + std::to_string(key) + ")");
-    off = off || std::abs(length - 1) > kRounding;
+    off = off || std::abs(length - 1) > rounding;
     for (int c = 0; c < 4; ++c) q[c] = static_cast<float>(q[c] / length);
   }
   return off;
@@ -100,8 +100,8 @@ std::optional<AnimationPath> path_of(const std::string& name) {
 
 /// What KHR_animation_pointer says that a channel changes.
 std::string pointer_of(const Json& target) {
-  static const Json::json_pointer kPath("/extensions/KHR_animation_pointer/pointer");
-  return target.value(kPath, "pointer");
+  static const Json::json_pointer pointer("/extensions/KHR_animation_pointer/pointer");
+  return target.value(pointer, "pointer");
 }
 
 Animation read_animation(const Gltf& gltf, const Json& json, const std::string& here,
@@ -131,8 +131,8 @@ Animation read_animation(const Gltf& gltf, const Json& json, const std::string& 
         read_channel(gltf, json["samplers"][sampler], *path, here + ", sampler " + std::to_string(sampler), warnings));
     out.channels.back().node = node;
     values += out.channels.back().values.size() + out.channels.back().times_s.size();
-    if (values > kMostValues) {
-      fail(gltf.file + ": " + here, "the animations up to here have more than " + std::to_string(kMostValues) +
+    if (values > most_values) {
+      fail(gltf.file + ": " + here, "the animations up to here have more than " + std::to_string(most_values) +
                                         " values (" + std::to_string(values) + ")");
     }
   }

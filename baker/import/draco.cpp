@@ -13,7 +13,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t kMostPerByte = 2000;  // triangles and vertices that a byte can stand for
+constexpr std::uint64_t most_per_byte = 2000;  // triangles and vertices that a byte can stand for
 
 struct Counts {
   std::uint64_t points = 0, triangles = 0;
@@ -130,7 +130,7 @@ DracoPrimitive decode_draco(const Gltf& gltf, const Json& primitive, const std::
   const auto bytes = view_bytes(gltf, extension["bufferView"].get<int>(), where);
   const auto& accessors = gltf.model.accessors;
   const Counts claimed = claimed_counts(bytes, where);
-  if (claimed.points + claimed.triangles > kMostPerByte * bytes.size()) {
+  if (claimed.points + claimed.triangles > most_per_byte * bytes.size()) {
     fail(where, "Draco stream claims more than it can hold (" + std::to_string(claimed.points) + " vertices in " +
                     std::to_string(bytes.size()) + " bytes)");
   }

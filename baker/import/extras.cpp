@@ -9,7 +9,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::array<std::string_view, 1> kShadow = {"shadow"};
+constexpr std::array<std::string_view, 1> shadow = {"shadow"};
 
 /// The value of `extras.chandelier`, or nullptr.
 const Json* find_extras(const Json& owner) {
@@ -70,10 +70,10 @@ std::optional<Extras> extras_of(const Gltf& gltf, const Json& owner, const std::
 }
 
 bool is_shadowless(const Gltf& gltf, std::size_t number, Warnings& warnings) {
-  static const Json::json_pointer kLight("/extensions/KHR_lights_punctual");
+  static const Json::json_pointer light("/extensions/KHR_lights_punctual");
   const Json& node = gltf.json["nodes"][number];
   const std::string here = place(gltf.json, "nodes", number);
-  const bool has_light = node.contains(kLight);
+  const bool has_light = node.contains(light);
   if (!node.contains("mesh")) {
     const Json* json = find_extras(node);
     if (json && json->is_object() && json->contains("shadow") && !has_light) {
@@ -82,7 +82,7 @@ bool is_shadowless(const Gltf& gltf, std::size_t number, Warnings& warnings) {
     }
     return false;
   }
-  std::span<const std::string_view> known = kShadow;
+  std::span<const std::string_view> known = shadow;
   if (has_light) known = {};  // the light's keys are told with the light
   const auto extras = extras_of(gltf, node, here, known, warnings);
   return extras && !extras->boolean("shadow").value_or(true);
@@ -90,7 +90,7 @@ bool is_shadowless(const Gltf& gltf, std::size_t number, Warnings& warnings) {
 
 std::optional<bool> shadow_of_material(const Gltf& gltf, std::size_t number, Warnings& warnings) {
   const Json& material = gltf.json["materials"][number];
-  const auto extras = extras_of(gltf, material, place(gltf.json, "materials", number), kShadow, warnings);
+  const auto extras = extras_of(gltf, material, place(gltf.json, "materials", number), shadow, warnings);
   return extras ? extras->boolean("shadow") : std::nullopt;
 }
 

@@ -11,8 +11,8 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t kMostGeometryBytes = 1ull << 34;
-constexpr std::uint64_t kMostZeros = 1ull << 22;
+constexpr std::uint64_t most_geometry_bytes = 1ull << 34;
+constexpr std::uint64_t most_zeros = 1ull << 22;
 
 const Json& json_of(const Gltf& gltf, std::size_t mesh, std::size_t primitive) {
   return gltf.json["meshes"][mesh]["primitives"][primitive];
@@ -124,12 +124,12 @@ void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, std::span<
   const bool flat = !in.attributes.contains("NORMAL");  // each corner may become a vertex of its own
   total.bytes += (flat ? vertices + corners : vertices) * sizeof(Vertex) + corners * sizeof(std::uint32_t);
   add_morph_size(gltf, in, morph_weights, where, total.morphed);
-  if (total.zeros > kMostZeros) {
-    fail(where, "accessors without a buffer view have more than " + std::to_string(kMostZeros) +
+  if (total.zeros > most_zeros) {
+    fail(where, "accessors without a buffer view have more than " + std::to_string(most_zeros) +
                     " elements together (" + std::to_string(total.zeros) + ")");
   }
-  if (total.bytes > kMostGeometryBytes) {
-    fail(where, "the geometry up to here needs more than " + std::to_string(kMostGeometryBytes) + " bytes (" +
+  if (total.bytes > most_geometry_bytes) {
+    fail(where, "the geometry up to here needs more than " + std::to_string(most_geometry_bytes) + " bytes (" +
                     std::to_string(total.bytes) + ")");
   }
 }

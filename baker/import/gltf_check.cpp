@@ -9,7 +9,7 @@ namespace chandelier::baker {
 namespace {
 
 void check_buffer(const Json&, const Object& buffer) {
-  buffer.integer("byteLength", 0, kMostBytes, Need::required);
+  buffer.integer("byteLength", 0, largest_byte_count, Need::required);
   buffer.text("uri");
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     if (const auto extension = buffer.extension(name)) extension->boolean("fallback");
@@ -18,8 +18,8 @@ void check_buffer(const Json&, const Object& buffer) {
 
 void check_buffer_view(const Json& root, const Object& view) {
   view.index("buffer", section_size(root, "buffers"), Need::required);
-  view.integer("byteOffset", 0, kMostBytes);
-  view.integer("byteLength", 0, kMostBytes, Need::required);
+  view.integer("byteOffset", 0, largest_byte_count);
+  view.integer("byteLength", 0, largest_byte_count, Need::required);
   view.integer("byteStride", 4, 252);
   const Json* stride = view.find("byteStride");
   if (stride && stride->get<std::uint64_t>() % 4 != 0) view.bad("byteStride", "is not a multiple of 4", *stride);
@@ -34,28 +34,28 @@ void check_component_type(const Object& object) {
 void check_accessor(const Json& root, const Object& accessor) {
   const std::size_t views = section_size(root, "bufferViews");
   accessor.index("bufferView", views);
-  accessor.integer("byteOffset", 0, kMostBytes);
+  accessor.integer("byteOffset", 0, largest_byte_count);
   check_component_type(accessor);
   accessor.boolean("normalized");
   accessor.integer("count", 0, 0xFFFFFFFEu, Need::required);
   accessor.text("type", Need::required);
   const auto sparse = accessor.object("sparse");
   if (!sparse) return;
-  sparse->integer("count", 0, kMostInt, Need::required);
+  sparse->integer("count", 0, largest_int, Need::required);
   const auto indices = sparse->object("indices", Need::required);
   indices->index("bufferView", views, Need::required);
-  indices->integer("byteOffset", 0, kMostInt);
+  indices->integer("byteOffset", 0, largest_int);
   check_component_type(*indices);
   const auto values = sparse->object("values", Need::required);
   values->index("bufferView", views, Need::required);
-  values->integer("byteOffset", 0, kMostInt);
+  values->integer("byteOffset", 0, largest_int);
 }
 
 void check_weights(const Object& object) {
   const Json* weights = object.find("weights");
   if (!weights) return;
   if (!weights->is_array()) object.bad("weights", "is not an array", *weights);
-  for (const Json& weight : *weights) object.check_number("weights", weight, -kBig, kBig);
+  for (const Json& weight : *weights) object.check_number("weights", weight, -largest_number, largest_number);
 }
 
 void check_mesh(const Json& root, const Object& mesh) {
@@ -91,12 +91,12 @@ void check_node(const Json& root, const Object& node) {
   node.index("camera", section_size(root, "cameras"));
   node.index("skin", section_size(root, "skins"));
   node.indices("children", section_size(root, "nodes"));
-  node.numbers("matrix", 16, -kBig, kBig);
+  node.numbers("matrix", 16, -largest_number, largest_number);
   check_last_row(node);
   check_weights(node);
-  node.numbers("translation", 3, -kBig, kBig);
-  node.numbers("rotation", 4, -kBig, kBig);
-  node.numbers("scale", 3, -kBig, kBig);
+  node.numbers("translation", 3, -largest_number, largest_number);
+  node.numbers("rotation", 4, -largest_number, largest_number);
+  node.numbers("scale", 3, -largest_number, largest_number);
   check_instancing(root, node);
   if (const auto visibility = node.extension("KHR_node_visibility")) visibility->boolean("visible");
   const auto light = node.extension("KHR_lights_punctual");
@@ -114,8 +114,8 @@ void check_texture_use(const Json& root, const Object& owner, const char* key, c
   const auto use = owner.object(key);
   if (!use) return;
   use->index("index", section_size(root, "textures"), Need::required);
-  use->integer("texCoord", 0, kMostInt);
-  if (strength) use->number(strength, -kBig, kBig);
+  use->integer("texCoord", 0, largest_int);
+  if (strength) use->number(strength, -largest_number, largest_number);
   check_texture_transform(*use);
 }
 
@@ -130,12 +130,12 @@ void check_material(const Json& root, const Object& material) {
   check_texture_use(root, material, "normalTexture", "scale");
   check_texture_use(root, material, "occlusionTexture", "strength");
   check_texture_use(root, material, "emissiveTexture", nullptr);
-  material.numbers("emissiveFactor", 3, 0, kBig);
+  material.numbers("emissiveFactor", 3, 0, largest_number);
   material.text("alphaMode");
-  material.number("alphaCutoff", 0, kBig);
+  material.number("alphaCutoff", 0, largest_number);
   material.boolean("doubleSided");
   if (const auto strength = material.extension("KHR_materials_emissive_strength")) {
-    strength->number("emissiveStrength", 0, kBig);
+    strength->number("emissiveStrength", 0, largest_number);
   }
   if (const auto transmission = material.extension("KHR_materials_transmission")) {
     transmission->number("transmissionFactor", 0, 1);
@@ -171,14 +171,15 @@ void check_camera(const Json&, const Object& camera) {
   const Json& type = camera.json["type"];
   if (type == "orthographic") {
     const auto orthographic = camera.object("orthographic", Need::required);
-    for (const char* key : {"xmag", "ymag", "znear", "zfar"}) orthographic->number(key, -kBig, kBig, Need::required);
+    for (const char* key : {"xmag", "ymag", "znear", "zfar"})
+      orthographic->number(key, -largest_number, largest_number, Need::required);
     return;
   }
   if (type != "perspective") camera.bad("type", "is not a camera type", type);
   const auto perspective = camera.object("perspective", Need::required);
-  perspective->number("yfov", -kBig, kBig, Need::required);
-  perspective->number("znear", 0, kBig, Need::required);
-  perspective->number("zfar", 0, kBig);
+  perspective->number("yfov", -largest_number, largest_number, Need::required);
+  perspective->number("znear", 0, largest_number, Need::required);
+  perspective->number("zfar", 0, largest_number);
   perspective->number("aspectRatio", 1e-6, 1e6);
 }
 
@@ -187,16 +188,16 @@ void check_light(const Json&, const Object& light) {
   light.text("name");
   light.numbers("color", 3, 0, 1e6);   // glTF says up to 1; a pack holds this much
   light.number("intensity", 0, 1e12);  // a pack's limit
-  light.number("range", 0, kBig);
+  light.number("range", 0, largest_number);
   const double range = light.json.value("range", 0.0);  // 0, which glTF does not allow, is taken as none
   if (range > 0 && range < 1e-12) light.bad("range", "is out of range", light.json["range"]);
   const Json& type = light.json["type"];
   if (type != "point" && type != "spot" && type != "directional") light.bad("type", "is not a light type", type);
   if (type != "spot") return;
   const auto spot = light.object("spot", Need::required);
-  constexpr double kHalfPi = 1.5708;
-  spot->number("innerConeAngle", 0, kHalfPi);
-  spot->number("outerConeAngle", 1e-6, kHalfPi);
+  constexpr double half_pi = 1.5708;
+  spot->number("innerConeAngle", 0, half_pi);
+  spot->number("outerConeAngle", 1e-6, half_pi);
   if (spot->json.value("innerConeAngle", 0.0) > spot->json.value("outerConeAngle", 0.7853981633974483)) {
     spot->bad("innerConeAngle", "is wider than the outer cone", spot->json["innerConeAngle"]);
   }
@@ -261,9 +262,10 @@ void check_tree(const Json& json, const std::string& file) {
 }  // namespace
 
 std::string place(const Json& json, const char* section, std::size_t index) {
-  static const std::pair<const char*, const char*> kSingular[] = {{"meshes", "mesh"}, {"bufferViews", "buffer view"}};
+  static const std::pair<const char*, const char*> singular_names[] = {{"meshes", "mesh"},
+                                                                       {"bufferViews", "buffer view"}};
   std::string out = std::string(section).substr(0, std::string(section).size() - 1);
-  for (const auto& [plural, singular] : kSingular) {
+  for (const auto& [plural, singular] : singular_names) {
     if (std::string(section) == plural) out = singular;
   }
   out += " " + std::to_string(index);
@@ -275,8 +277,8 @@ std::string place(const Json& json, const char* section, std::size_t index) {
 }
 
 bool is_accessor_type(const std::string& type) {
-  static const char* const kTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
-  return std::find(std::begin(kTypes), std::end(kTypes), type) != std::end(kTypes);
+  static const char* const types[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+  return std::find(std::begin(types), std::end(types), type) != std::end(types);
 }
 
 void check_gltf(const Json& json, const std::string& file) {

@@ -5,7 +5,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t kMostCount = 0xFFFFFFFEu;
+constexpr std::uint64_t most_count = 0xFFFFFFFEu;
 
 /// The filter suits the mode and the stride (EXT_meshopt_compression, "Filters").
 void check_filter(const Object& data, bool attributes, std::uint64_t stride) {
@@ -35,10 +35,10 @@ void check_meshopt_view(const Json& root, const Object& view) {
   if (!name) return;
   const Object data = *view.extension(name);
   data.index("buffer", section_size(root, "buffers"), Need::required);
-  data.integer("byteOffset", 0, kMostBytes);
-  data.integer("byteLength", 1, kMostBytes, Need::required);
+  data.integer("byteOffset", 0, largest_byte_count);
+  data.integer("byteLength", 1, largest_byte_count, Need::required);
   data.integer("byteStride", 1, 256, Need::required);
-  data.integer("count", 1, kMostCount, Need::required);
+  data.integer("count", 1, most_count, Need::required);
   data.text("mode", Need::required);
   const auto& mode = data.json["mode"].get_ref<const std::string&>();
   const auto stride = data.json["byteStride"].get<std::uint64_t>(), count = data.json["count"].get<std::uint64_t>();
@@ -81,7 +81,7 @@ void check_texture_transform(const Object& use) {
   transform->numbers("offset", 2, -1e9, 1e9);
   transform->numbers("scale", 2, -1e9, 1e9);
   transform->number("rotation", -1e9, 1e9);
-  transform->integer("texCoord", 0, kMostInt);
+  transform->integer("texCoord", 0, largest_int);
 }
 
 void check_texture_sources(const Json& root, const Object& texture) {

@@ -31,60 +31,60 @@ Shape shape(std::initializer_list<std::string_view> keys,
 }
 
 // Where it says nothing else, as in the specification's list of objects.
-const Shape kTextureInfo = plain({"index", "texCoord"});
-const Shape kNormalTexture = plain({"index", "texCoord", "scale"});
-const Shape kOcclusionTexture = plain({"index", "texCoord", "strength"});
-const Shape kPbr = shape({"baseColorFactor", "metallicFactor", "roughnessFactor"},
-                         {{"baseColorTexture", &kTextureInfo}, {"metallicRoughnessTexture", &kTextureInfo}});
-const Shape kMaterial = shape({"name", "emissiveFactor", "alphaMode", "alphaCutoff", "doubleSided"},
-                              {{"pbrMetallicRoughness", &kPbr},
-                               {"normalTexture", &kNormalTexture},
-                               {"occlusionTexture", &kOcclusionTexture},
-                               {"emissiveTexture", &kTextureInfo}});
-const Shape kSparseIndices = plain({"bufferView", "byteOffset", "componentType"});
-const Shape kSparseValues = plain({"bufferView", "byteOffset"});
-const Shape kSparse = shape({"count"}, {{"indices", &kSparseIndices}, {"values", &kSparseValues}});
-const Shape kAccessor =
+const Shape texture_info = plain({"index", "texCoord"});
+const Shape normal_texture = plain({"index", "texCoord", "scale"});
+const Shape occlusion_texture = plain({"index", "texCoord", "strength"});
+const Shape pbr = shape({"baseColorFactor", "metallicFactor", "roughnessFactor"},
+                        {{"baseColorTexture", &texture_info}, {"metallicRoughnessTexture", &texture_info}});
+const Shape material = shape({"name", "emissiveFactor", "alphaMode", "alphaCutoff", "doubleSided"},
+                             {{"pbrMetallicRoughness", &pbr},
+                              {"normalTexture", &normal_texture},
+                              {"occlusionTexture", &occlusion_texture},
+                              {"emissiveTexture", &texture_info}});
+const Shape sparse_indices = plain({"bufferView", "byteOffset", "componentType"});
+const Shape sparse_values = plain({"bufferView", "byteOffset"});
+const Shape sparse = shape({"count"}, {{"indices", &sparse_indices}, {"values", &sparse_values}});
+const Shape accessor =
     shape({"name", "bufferView", "byteOffset", "componentType", "normalized", "count", "type", "max", "min"},
-          {{"sparse", &kSparse}});
-const Shape kTarget = plain({"node", "path"});
-const Shape kChannel = shape({"sampler"}, {{"target", &kTarget}});
-const Shape kAnimationSampler = plain({"input", "interpolation", "output"});
-const Shape kAnimation = shape({"name"}, {{"channels", &kChannel}, {"samplers", &kAnimationSampler}});
-const Shape kAsset = plain({"copyright", "generator", "version", "minVersion"});
-const Shape kBuffer = plain({"name", "uri", "byteLength"});
-const Shape kBufferView = plain({"name", "buffer", "byteOffset", "byteLength", "byteStride", "target"});
-const Shape kOrthographic = plain({"xmag", "ymag", "zfar", "znear"});
-const Shape kPerspective = plain({"aspectRatio", "yfov", "zfar", "znear"});
-const Shape kCamera = shape({"name", "type"}, {{"orthographic", &kOrthographic}, {"perspective", &kPerspective}});
-const Shape kImage = plain({"name", "uri", "mimeType", "bufferView"});
-const Shape kPrimitive = plain({"attributes", "indices", "material", "mode", "targets"});
-const Shape kMesh = shape({"name", "weights"}, {{"primitives", &kPrimitive}});
-const Shape kNode =
+          {{"sparse", &sparse}});
+const Shape target = plain({"node", "path"});
+const Shape channel = shape({"sampler"}, {{"target", &target}});
+const Shape animation_sampler = plain({"input", "interpolation", "output"});
+const Shape animation = shape({"name"}, {{"channels", &channel}, {"samplers", &animation_sampler}});
+const Shape asset = plain({"copyright", "generator", "version", "minVersion"});
+const Shape buffer = plain({"name", "uri", "byteLength"});
+const Shape buffer_view = plain({"name", "buffer", "byteOffset", "byteLength", "byteStride", "target"});
+const Shape orthographic = plain({"xmag", "ymag", "zfar", "znear"});
+const Shape perspective = plain({"aspectRatio", "yfov", "zfar", "znear"});
+const Shape camera = shape({"name", "type"}, {{"orthographic", &orthographic}, {"perspective", &perspective}});
+const Shape image = plain({"name", "uri", "mimeType", "bufferView"});
+const Shape primitive = plain({"attributes", "indices", "material", "mode", "targets"});
+const Shape mesh = shape({"name", "weights"}, {{"primitives", &primitive}});
+const Shape node =
     plain({"name", "camera", "children", "skin", "matrix", "mesh", "rotation", "scale", "translation", "weights"});
-const Shape kSampler = plain({"name", "magFilter", "minFilter", "wrapS", "wrapT"});
-const Shape kScene = plain({"name", "nodes"});
-const Shape kSkin = plain({"name", "inverseBindMatrices", "skeleton", "joints"});
-const Shape kTexture = plain({"name", "sampler", "source"});
-const Shape kSpot = plain({"innerConeAngle", "outerConeAngle"});
-const Shape kLight = shape({"name", "color", "intensity", "type", "range"}, {{"spot", &kSpot}});
+const Shape sampler = plain({"name", "magFilter", "minFilter", "wrapS", "wrapT"});
+const Shape scene = plain({"name", "nodes"});
+const Shape skin = plain({"name", "inverseBindMatrices", "skeleton", "joints"});
+const Shape texture = plain({"name", "sampler", "source"});
+const Shape spot = plain({"innerConeAngle", "outerConeAngle"});
+const Shape light = shape({"name", "color", "intensity", "type", "range"}, {{"spot", &spot}});
 
 struct Section {
   const char* name;
   const Shape& of;
 };
-const Section kSections[] = {{"accessors", kAccessor},     {"animations", kAnimation}, {"buffers", kBuffer},
-                             {"bufferViews", kBufferView}, {"cameras", kCamera},       {"images", kImage},
-                             {"materials", kMaterial},     {"meshes", kMesh},          {"nodes", kNode},
-                             {"samplers", kSampler},       {"scenes", kScene},         {"skins", kSkin},
-                             {"textures", kTexture}};
+const Section sections[] = {{"accessors", accessor},      {"animations", animation}, {"buffers", buffer},
+                            {"bufferViews", buffer_view}, {"cameras", camera},       {"images", image},
+                            {"materials", material},      {"meshes", mesh},          {"nodes", node},
+                            {"samplers", sampler},        {"scenes", scene},         {"skins", skin},
+                            {"textures", texture}};
 
 Shape root_shape() {
-  Shape out = shape({"extensionsUsed", "extensionsRequired", "scene"}, {{"asset", &kAsset}});
-  for (const Section& section : kSections) out.keys[section.name] = nullptr;
+  Shape out = shape({"extensionsUsed", "extensionsRequired", "scene"}, {{"asset", &asset}});
+  for (const Section& section : sections) out.keys[section.name] = nullptr;
   return out;
 }
-const Shape kRoot = root_shape();
+const Shape root = root_shape();
 
 /// Characters to add, drop or replace (Levenshtein), whatever their case. At most 40 characters each.
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -121,9 +121,9 @@ struct KeyLint {
 
   /// `place`: of the object, or of the one that it is in; empty for the glTF's own.
   void unknown(const std::string& place, std::string_view key, const Shape& shape) {
-    constexpr std::uint64_t kMostTold = 3;  // names of a warning that are shown
+    constexpr std::uint64_t most_told = 3;  // names of a warning that are shown
     std::string name = (place.empty() ? "" : place + ": ") + shortened(std::string(key), 40);
-    const std::string_view meant = told++ < kMostTold ? nearest(key, shape) : std::string_view();
+    const std::string_view meant = told++ < most_told ? nearest(key, shape) : std::string_view();
     if (!meant.empty()) name += ", is it " + std::string(meant) + "?";
     lint.warnings.add(lint.file, "glTF", "unknown key is ignored", key.empty() ? "an empty name" : name);
   }
@@ -150,8 +150,8 @@ struct KeyLint {
 
 void lint_keys(const Lint& lint) {
   KeyLint keys{lint};
-  keys.walk(lint.json, kRoot, [] { return std::string(); });
-  for (const auto& [name, of] : kSections) {
+  keys.walk(lint.json, root, [] { return std::string(); });
+  for (const auto& [name, of] : sections) {
     for (std::size_t i = 0; i < section_size(lint.json, name); ++i) {
       keys.walk(lint.entry(name, i), of, [&] { return place(lint.json, name, i); });
     }
@@ -160,7 +160,7 @@ void lint_keys(const Lint& lint) {
   if (lights == lint.json.end() || !lights->contains("KHR_lights_punctual")) return;
   const Json& punctual = (*lights)["KHR_lights_punctual"];
   for (std::size_t i = 0; i < section_size(punctual, "lights"); ++i) {
-    keys.walk(punctual["lights"][i], kLight, [&] { return place(punctual, "lights", i); });
+    keys.walk(punctual["lights"][i], light, [&] { return place(punctual, "lights", i); });
   }
 }
 

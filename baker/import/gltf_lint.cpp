@@ -216,8 +216,8 @@ void lint_tree(const Lint& lint, const Json& value, const std::set<std::string>&
 }  // namespace
 
 const Json& Lint::view_of(const Json& accessor) const {
-  static const Json kNone = Json::object();
-  return accessor.contains("bufferView") ? entry("bufferViews", whole(accessor, "bufferView", 0)) : kNone;
+  static const Json no_members = Json::object();
+  return accessor.contains("bufferView") ? entry("bufferViews", whole(accessor, "bufferView", 0)) : no_members;
 }
 
 std::uint64_t whole(const Json& object, const char* key, std::uint64_t otherwise) {

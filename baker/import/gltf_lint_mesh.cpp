@@ -8,15 +8,15 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t kVertices = 34962, kIndices = 34963;  // a buffer view's target
+constexpr std::uint64_t vertex_target = 34962, index_target = 34963;  // a buffer view's target
 
 bool is_known_attribute(const std::string& name) {
   if (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name[0] == '_') return true;
   const std::size_t line = name.rfind('_');
   if (line == std::string::npos || line + 1 == name.size()) return false;
-  static const std::set<std::string> kSets = {"TEXCOORD", "COLOR", "JOINTS", "WEIGHTS"};
+  static const std::set<std::string> sets = {"TEXCOORD", "COLOR", "JOINTS", "WEIGHTS"};
   const std::string digits = name.substr(line + 1);
-  return kSets.contains(name.substr(0, line)) && digits.find_first_not_of("0123456789") == std::string::npos &&
+  return sets.contains(name.substr(0, line)) && digits.find_first_not_of("0123456789") == std::string::npos &&
          (digits == "0" || digits[0] != '0');
 }
 
@@ -47,7 +47,7 @@ struct MeshLint {
         say("an attribute is not aligned to 4 bytes");
       }
     }
-    if (whole(view, "target", kVertices) != kVertices) say("an attribute's buffer view is of another target");
+    if (whole(view, "target", vertex_target) != vertex_target) say("an attribute's buffer view is of another target");
   }
 
   void indices(const Json& accessor) const {
@@ -55,7 +55,8 @@ struct MeshLint {
     const bool right = accessor["type"] == "SCALAR" && (type == 5121 || type == 5123 || type == 5125);
     if (!right || accessor.value("normalized", false)) say("indices are not of unsigned integers");
     if (lint.view_of(accessor).contains("byteStride")) say("indices have a byteStride");
-    if (whole(lint.view_of(accessor), "target", kIndices) != kIndices) say("indices' buffer view is of another target");
+    if (whole(lint.view_of(accessor), "target", index_target) != index_target)
+      say("indices' buffer view is of another target");
   }
 
   /// One morph target; one that has a weight is read, and may fail.
@@ -69,7 +70,7 @@ struct MeshLint {
         say("a morph target has another count than its base");
       }
       if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) say("POSITION has no bounds");
-      if (whole(lint.view_of(accessor), "target", kVertices) != kVertices) {
+      if (whole(lint.view_of(accessor), "target", vertex_target) != vertex_target) {
         say("an attribute's buffer view is of another target");
       }
     }

@@ -12,8 +12,8 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr int kMostNesting = 200;  // of JSON: glTF needs about ten; parsers recurse
-constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
+constexpr int most_nesting = 200;  // of JSON: glTF needs about ten; parsers recurse
+constexpr std::uint32_t glb_magic = 0x46546C67, json_chunk = 0x4E4F534A, bin_chunk = 0x004E4942;
 
 std::uint32_t u32_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
   std::uint32_t value = 0;
@@ -37,7 +37,7 @@ void refuse_other_kinds(std::span<const std::uint8_t> bytes, const std::string& 
 
 /// Splits a .glb; a .gltf is all JSON.
 Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& file, Warnings& warnings) {
-  if (bytes.size() < 4 || u32_at(bytes, 0) != kGlbMagic) return {bytes, {}};
+  if (bytes.size() < 4 || u32_at(bytes, 0) != glb_magic) return {bytes, {}};
   if (bytes.size() < 20) fail(file, "truncated GLB (" + std::to_string(bytes.size()) + " bytes)");
   if (u32_at(bytes, 4) != 2) fail(file, "GLB version is not 2 (" + std::to_string(u32_at(bytes, 4)) + ")");
   const std::uint64_t length = u32_at(bytes, 8);
@@ -52,11 +52,11 @@ Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& f
     const std::uint64_t size = u32_at(bytes, at), type = u32_at(bytes, at + 4);
     if (size > length - at - 8) fail(where, "is longer than the file (" + std::to_string(size) + " bytes)");
     const auto data = bytes.subspan(at + 8, size);
-    if (number == 0 && type != kJsonChunk) fail(where, "is not JSON (type " + std::to_string(type) + ")");
+    if (number == 0 && type != json_chunk) fail(where, "is not JSON (type " + std::to_string(type) + ")");
     if (number == 0) chunks.json = data;
-    if (number == 1 && type == kBinChunk) chunks.bin = data;
+    if (number == 1 && type == bin_chunk) chunks.bin = data;
     if (size % 4 != 0) warnings.add(file, where.substr(file.size() + 2), "its length is not a multiple of 4");
-    if ((number > 1 && type == kBinChunk) || (number > 0 && type == kJsonChunk)) {
+    if ((number > 1 && type == bin_chunk) || (number > 0 && type == json_chunk)) {
       warnings.add(file, where.substr(file.size() + 2), "a second or misplaced chunk is ignored");
     }
     at += 8 + size;
@@ -77,7 +77,7 @@ void check_nesting(std::span<const std::uint8_t> text, const std::string& file) 
     if (c == '"') in_string = true;
     if (c == '{' || c == '[') ++depth;
     if (c == '}' || c == ']') --depth;
-    if (depth > kMostNesting) fail(file, "JSON is nested too deeply (more than " + std::to_string(kMostNesting) + ")");
+    if (depth > most_nesting) fail(file, "JSON is nested too deeply (more than " + std::to_string(most_nesting) + ")");
   }
 }
 
@@ -101,7 +101,7 @@ void make_integer(Json& json) {
 /// JSON makes no difference between 1 and 1.0, but tinygltf does: whole numbers, of the keys that ask for them, become
 /// so.
 void make_integers(Json& json) {
-  static const std::set<std::string> kKeys = {
+  static const std::set<std::string> keys = {
       "attributes", "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride", "camera",
       "children",   "componentType", "count",      "index",      "indices",    "input",      "joints",
       "material",   "mesh",          "mode",       "node",       "nodes",      "output",     "sampler",
@@ -109,7 +109,7 @@ void make_integers(Json& json) {
   if (json.is_array() && !json.empty() && !json[0].is_structured()) return;  // of numbers
   for (auto it = json.begin(); json.is_structured() && it != json.end(); ++it) {
     if (it->is_structured()) make_integers(*it);
-    if (!json.is_object() || !kKeys.contains(it.key())) continue;
+    if (!json.is_object() || !keys.contains(it.key())) continue;
     make_integer(*it);
     if (!it->is_structured()) continue;
     for (Json& each : *it) {
@@ -167,9 +167,9 @@ tinygltf::Model parse_model(const Json& json, const std::string& file) {
 
 /// Holds nothing of its own: views on it are decoded from another (EXT_meshopt_compression).
 bool is_fallback(const Json& buffer) {
-  static const Json::json_pointer kExt("/extensions/EXT_meshopt_compression/fallback");
-  static const Json::json_pointer kKhr("/extensions/KHR_meshopt_compression/fallback");
-  return buffer.value(kExt, Json()) == true || buffer.value(kKhr, Json()) == true;
+  static const Json::json_pointer ext("/extensions/EXT_meshopt_compression/fallback");
+  static const Json::json_pointer khr("/extensions/KHR_meshopt_compression/fallback");
+  return buffer.value(ext, Json()) == true || buffer.value(khr, Json()) == true;
 }
 
 /// A buffer's bytes, or what is wrong with it: an error only where something reads it.
@@ -256,20 +256,20 @@ std::span<const std::uint8_t> buffer_bytes(const Gltf& gltf, std::size_t number,
 }
 
 void check_extensions(const Json& json, const std::string& file, Warnings& warnings) {
-  static const std::set<std::string> kKnown = {"EXT_mesh_gpu_instancing",
-                                               "EXT_meshopt_compression",
-                                               "EXT_texture_webp",
-                                               "KHR_draco_mesh_compression",
-                                               "KHR_lights_punctual",
-                                               "KHR_materials_emissive_strength",
-                                               "KHR_materials_pbrSpecularGlossiness",
-                                               "KHR_materials_transmission",
-                                               "KHR_materials_unlit",
-                                               "KHR_mesh_quantization",
-                                               "KHR_meshopt_compression",
-                                               "KHR_node_visibility",
-                                               "KHR_texture_basisu",
-                                               "KHR_texture_transform"};
+  static const std::set<std::string> known = {"EXT_mesh_gpu_instancing",
+                                              "EXT_meshopt_compression",
+                                              "EXT_texture_webp",
+                                              "KHR_draco_mesh_compression",
+                                              "KHR_lights_punctual",
+                                              "KHR_materials_emissive_strength",
+                                              "KHR_materials_pbrSpecularGlossiness",
+                                              "KHR_materials_transmission",
+                                              "KHR_materials_unlit",
+                                              "KHR_mesh_quantization",
+                                              "KHR_meshopt_compression",
+                                              "KHR_node_visibility",
+                                              "KHR_texture_basisu",
+                                              "KHR_texture_transform"};
   std::set<std::string> required;
   for (const char* key : {"extensionsRequired", "extensionsUsed"}) {
     const auto it = json.find(key);
@@ -278,7 +278,7 @@ void check_extensions(const Json& json, const std::string& file, Warnings& warni
     for (const Json& name : *it) {
       if (!name.is_string())
         fail(file + ": " + key, "holds something else than a name (" + shortened(name.dump(), 60) + ")");
-      if (kKnown.contains(name.get<std::string>())) continue;
+      if (known.contains(name.get<std::string>())) continue;
       const auto& text = name.get_ref<const std::string&>();
       if (key == std::string("extensionsRequired"))
         fail(file + ": extensionsRequired", "unknown extension (" + shortened(text, 80) + ")");

@@ -21,7 +21,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kMostInstances = std::size_t{1} << 24;  // a few bytes of a file can stand for many
+constexpr std::size_t most_instances = std::size_t{1} << 24;  // a few bytes of a file can stand for many
 
 struct Import {
   Gltf& gltf;
@@ -36,7 +36,7 @@ struct Import {
 };
 
 std::uint32_t skin_of(const Import& in, const tinygltf::Node& node) {
-  return node.skin < 0 ? kNone : in.motion.skin[static_cast<std::size_t>(node.skin)];
+  return node.skin < 0 ? no_index : in.motion.skin[static_cast<std::size_t>(node.skin)];
 }
 
 /// Of a skin that nothing moves; else nullptr.
@@ -51,7 +51,7 @@ const Pose* pose_of(const Import& in, const tinygltf::Node& node) {
 glm::dmat4 place_of_mesh(const Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   if (const Pose* pose = pose_of(in, node)) return glm::translate(glm::dmat4(1), pose->origin_ws);
-  if (skin_of(in, node) == kNone) return placed.world_from_local;
+  if (skin_of(in, node) == no_index) return placed.world_from_local;
   const glm::dmat4& by_joint = in.motion.placed[static_cast<std::size_t>(node.skin)];
   return is_degenerate(by_joint) ? placed.world_from_local : by_joint;
 }
@@ -61,7 +61,7 @@ glm::dmat4 place_of_mesh(const Import& in, const PlacedNode& placed) {
 bool may_grow(const Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   if (node.extensions.contains("EXT_mesh_gpu_instancing")) return false;
-  if (skin_of(in, node) == kNone) return in.motion.moves[placed.node];
+  if (skin_of(in, node) == no_index) return in.motion.moves[placed.node];
   const Json& joints = in.gltf.json["skins"][static_cast<std::size_t>(node.skin)]["joints"];
   return std::any_of(joints.begin(), joints.end(),
                      [&](const Json& joint) { return in.motion.moves[joint.get<std::size_t>()] != 0; });
@@ -90,7 +90,7 @@ void visit_node(Import& in, const PlacedNode& placed) {
   const std::uint32_t mover = in.motion.mover(placed.node);
   if (in.scene.lights.size() > lights) {
     in.scene.lights.back().node = mover;
-    in.scene.lights.back().dynamic = in.scene.lights.back().dynamic || mover != kNone;
+    in.scene.lights.back().dynamic = in.scene.lights.back().dynamic || mover != no_index;
   }
   if (in.scene.cameras.size() > cameras) in.scene.cameras.back().node = mover;
   if (!placed.visible) return count_hidden(in, placed);
@@ -98,7 +98,7 @@ void visit_node(Import& in, const PlacedNode& placed) {
   if (is_degenerate(place_of_mesh(in, placed)) && !may_grow(in, placed)) return warn_of_scale(in, placed);
   const auto [it, added] = in.meshes.try_emplace(shape_of(in.gltf, in.motion, in.morphs, placed.node));
   MeshUse& use = it->second;
-  use.skinned = use.skinned || skin_of(in, node) != kNone || pose_of(in, node);
+  use.skinned = use.skinned || skin_of(in, node) != no_index || pose_of(in, node);
   if (!added) return;
   use.first_node = placed.node;
   use.number = fit_u32(in.scene.meshes.size() + in.mesh_order.size(), "meshes");
@@ -164,7 +164,7 @@ void add_mesh(Import& in, const MeshShape& shape, std::vector<ReadPrimitive>&& r
     Primitive& primitive = *read[p].primitive;
     primitive.material = materials.use(in.gltf.model.meshes[shape.mesh].primitives[p].material);
     const Material& material = in.scene.materials[primitive.material];
-    primitive.needs_tangents = primitive.needs_tangents && material.normal.texture != kNone;
+    primitive.needs_tangents = primitive.needs_tangents && material.normal.texture != no_index;
     primitive.tangents_from_uv1 = material.normal.uv1;
     mesh.primitives.push_back(std::move(primitive));
   }
@@ -184,14 +184,14 @@ void place_by_skin(const Import& in, const PlacedNode& placed, const MeshUse& me
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   const std::uint32_t skin = skin_of(in, node);
   const bool posed = pose_of(in, node) != nullptr;
-  if (skin == kNone && !posed) return;
+  if (skin == no_index && !posed) return;
   if (mesh.joint_count == 0) {
     in.warnings.add(in.gltf.file, place(in.gltf.json, "nodes", placed.node),
                     "a skin is ignored: its mesh has vertices without joints");
     return;
   }
   if (posed) {
-    instance.node = kNone;  // which glTF leaves out of account
+    instance.node = no_index;  // which glTF leaves out of account
   } else {
     check_joints(in, placed.node, mesh.joint_count, in.scene.skins[skin].joints.size());
   }
@@ -209,8 +209,8 @@ void add_instances(Import& in, const PlacedNode& placed) {
   MeshInstance instance{node.name, where, placed.world_from_local, mesh.number, in.motion.mover(placed.node)};
   instance.shadowless = shadowless;
   place_by_skin(in, placed, mesh, instance);
-  const bool skinned = instance.skin != kNone || (pose_of(in, node) && mesh.joint_count > 0);
-  const bool grows = instance.node != kNone || instance.skin != kNone;
+  const bool skinned = instance.skin != no_index || (pose_of(in, node) && mesh.joint_count > 0);
+  const bool grows = instance.node != no_index || instance.skin != no_index;
   if (is_degenerate(instance.world_from_local) && !grows) return warn_of_scale(in, placed);
   const auto places = read_instances(in.gltf, placed.node);
   if (!places || skinned) {
@@ -218,8 +218,8 @@ void add_instances(Import& in, const PlacedNode& placed) {
     in.scene.instances.push_back(std::move(instance));
     return;
   }
-  if (in.scene.instances.size() + places->size() > kMostInstances) {
-    fail(where, "more than " + std::to_string(kMostInstances) + " instances (" +
+  if (in.scene.instances.size() + places->size() > most_instances) {
+    fail(where, "more than " + std::to_string(most_instances) + " instances (" +
                     std::to_string(in.scene.instances.size() + places->size()) + ")");
   }
   for (const glm::dmat4& each : *places) {

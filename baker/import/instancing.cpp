@@ -27,10 +27,10 @@ glm::dmat4 rotation_at(const Floats& rotations, std::size_t i, const std::string
 }  // namespace
 
 std::optional<std::vector<glm::dmat4>> read_instances(const Gltf& gltf, std::size_t node) {
-  static const Json::json_pointer kPath("/extensions/EXT_mesh_gpu_instancing/attributes");
+  static const Json::json_pointer pointer("/extensions/EXT_mesh_gpu_instancing/attributes");
   const Json& json = gltf.json["nodes"][node];
-  if (!json.contains(kPath)) return std::nullopt;
-  const Json& attributes = json[kPath];
+  if (!json.contains(pointer)) return std::nullopt;
+  const Json& attributes = json[pointer];
   const std::string where = gltf.file + ": " + place(gltf.json, "nodes", node) + ", EXT_mesh_gpu_instancing";
   const Floats translations = read_attribute(gltf, attributes, "TRANSLATION", 3, where);
   const Floats rotations = read_attribute(gltf, attributes, "ROTATION", 4, where);

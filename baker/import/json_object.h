@@ -16,9 +16,9 @@ std::string shown(const Json& value);
 /// The entries of a glTF array; 0 where there is none.
 std::size_t section_size(const Json& json, const char* section);
 
-constexpr double kBig = 3e38;  // every number must fit a float
-constexpr std::uint64_t kMostBytes = 1ull << 53;
-constexpr std::uint64_t kMostInt = 0x7FFFFFFF;
+constexpr double largest_number = 3e38;  // every number must fit a float
+constexpr std::uint64_t largest_byte_count = 1ull << 53;
+constexpr std::uint64_t largest_int = 0x7FFFFFFF;
 
 struct Object {
   const Json& json;  // the object

@@ -13,14 +13,14 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::array<std::string_view, 8> kKnownKeys = {"cluster",  "dynamic",  "group",   "power_w",
+constexpr std::array<std::string_view, 8> known_keys = {"cluster",  "dynamic",  "group",   "power_w",
                                                         "priority", "radius_m", "range_m", "shadow"};
-constexpr double kMostPriority = 255, kMostPower = 1e12, kLeastRange = 1e-12, kMostRange = 3e38, kMostRadius = 1e6;
+constexpr double most_priority = 255, most_power = 1e12, least_range = 1e-12, most_range = 3e38, most_radius = 1e6;
 
 /// 0 stands for none.
 std::optional<double> range_in(const Extras& extras, const char* key) {
-  const auto value = extras.number(key, 0, kMostRange);
-  if (value && *value > 0 && *value < kLeastRange) extras.bad(key, "is out of range", extras.json[key]);
+  const auto value = extras.number(key, 0, most_range);
+  if (value && *value > 0 && *value < least_range) extras.bad(key, "is out of range", extras.json[key]);
   return value;
 }
 
@@ -31,16 +31,16 @@ void warn_of_range(const Gltf& gltf, const Light& light, const std::string& here
 
 /// `owner`: a node or a light.
 void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, Light& out, Warnings& warnings) {
-  const std::optional<Extras> found = extras_of(gltf, owner, here, kKnownKeys, warnings);
+  const std::optional<Extras> found = extras_of(gltf, owner, here, known_keys, warnings);
   if (!found) return;
   const Extras& extras = *found;
-  if (const auto value = extras.integer("priority", 0, kMostPriority)) out.priority = *value;
+  if (const auto value = extras.integer("priority", 0, most_priority)) out.priority = *value;
   if (const auto value = extras.boolean("dynamic")) out.dynamic = *value;
   if (const auto value = extras.boolean("cluster")) out.unclustered = !*value;
   if (const auto value = extras.boolean("shadow")) out.shadowless = !*value;
-  if (const auto value = extras.number("radius_m", 0, kMostRadius)) out.radius_m = static_cast<float>(*value);
+  if (const auto value = extras.number("radius_m", 0, most_radius)) out.radius_m = static_cast<float>(*value);
   if (const auto value = extras.text("group")) out.group = *value;
-  if (const auto value = extras.number("power_w", 0, kMostPower)) out.power_w = static_cast<float>(*value);
+  if (const auto value = extras.number("power_w", 0, most_power)) out.power_w = static_cast<float>(*value);
   if (const auto value = range_in(extras, "range_m")) {
     out.range_m = *value > 0 ? std::optional(static_cast<float>(*value)) : std::nullopt;
     if (*value == 0) warn_of_range(gltf, out, here, warnings);

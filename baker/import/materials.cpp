@@ -14,7 +14,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr double kMostEmissive = 1e12;  // a pack's limit
+constexpr double most_emissive = 1e12;  // a pack's limit
 
 Wrap wrap_of(int gltf_wrap, const std::string& where) {
   switch (gltf_wrap) {
@@ -48,8 +48,8 @@ Filter filter_of(int gltf_filter, const std::string& where) {
 
 /// KHR_materials_emissive_strength. From the JSON: tinygltf cuts an extension's integers to 32 bits.
 double emissive_strength(const Json& material) {
-  static const Json::json_pointer kPath("/extensions/KHR_materials_emissive_strength/emissiveStrength");
-  return material.value(kPath, 1.0);
+  static const Json::json_pointer pointer("/extensions/KHR_materials_emissive_strength/emissiveStrength");
+  return material.value(pointer, 1.0);
 }
 
 /// KHR_texture_transform: translation · rotation · scale, where the rotation goes counter-clockwise as v points down.
@@ -62,8 +62,8 @@ UvTransform uv_transform(const Json& json) {
 
 /// An image of KHR_texture_basisu, which is not decoded.
 bool is_ktx2(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::string_view kMagic = "\xABKTX 20";
-  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
+  constexpr std::string_view magic = "\xABKTX 20";
+  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
 }  // namespace
@@ -87,8 +87,8 @@ std::uint32_t Materials::add_material(int index) {
     const double strength = emissive_strength(gltf_.json["materials"][static_cast<std::size_t>(index)]);
     for (int c = 0; c < 3; ++c) out.emissive[c] = static_cast<float>(in.emissiveFactor[c] * strength);
     for (int c = 0; c < 3; ++c) {
-      if (!(out.emissive[c] <= kMostEmissive)) {
-        fail(where + ", emissiveFactor", "times emissiveStrength is above " + to_text(kMostEmissive) + " (" +
+      if (!(out.emissive[c] <= most_emissive)) {
+        fail(where + ", emissiveFactor", "times emissiveStrength is above " + to_text(most_emissive) + " (" +
                                              to_text(in.emissiveFactor[c] * strength) + ")");
       }
     }
@@ -99,9 +99,9 @@ std::uint32_t Materials::add_material(int index) {
     out.double_sided = in.doubleSided;
     const Json& json = gltf_.json["materials"][static_cast<std::size_t>(index)];
     out.unlit = json.contains(Json::json_pointer("/extensions/KHR_materials_unlit"));
-    static const Json::json_pointer kGlossy("/extensions/KHR_materials_pbrSpecularGlossiness");
-    if (json.contains(kGlossy)) {  // which the extension prefers, where a material has both
-      convert(json[kGlossy], in.alphaMode == "MASK", here, out);
+    static const Json::json_pointer glossy_pointer("/extensions/KHR_materials_pbrSpecularGlossiness");
+    if (json.contains(glossy_pointer)) {  // which the extension prefers, where a material has both
+      convert(json[glossy_pointer], in.alphaMode == "MASK", here, out);
     } else {
       const Json metallic_roughness = json.value("pbrMetallicRoughness", Json::object());
       out.base_color = use_texture(metallic_roughness, "baseColorTexture", in.alphaMode == "MASK", here);
@@ -114,7 +114,7 @@ std::uint32_t Materials::add_material(int index) {
     out.shadow = shadow_of_material(gltf_, static_cast<std::size_t>(index), warnings_);
     out.shadowless = !out.shadow.value_or(true);
     // Without its map, which may be black nearly everywhere, the whole surface would glow.
-    if (json.contains("emissiveTexture") && out.emissive_map.texture == kNone) out.emissive = glm::vec3(0);
+    if (json.contains("emissiveTexture") && out.emissive_map.texture == no_index) out.emissive = glm::vec3(0);
     if (in.alphaMode != "OPAQUE" && in.alphaMode != "MASK" && in.alphaMode != "BLEND") {
       fail(where + ", alphaMode", "is not OPAQUE, MASK or BLEND (" + shortened(in.alphaMode, 40) + ")");
     }
@@ -128,13 +128,13 @@ std::uint32_t Materials::add_material(int index) {
 
 /// KHR_materials_transmission. Without its map, the whole surface would let light through.
 void Materials::read_transmission(const Json& material, const std::string& here, Material& out) {
-  static const Json::json_pointer kPath("/extensions/KHR_materials_transmission");
-  if (!material.contains(kPath)) return;
-  const Json& transmission = material[kPath];
+  static const Json::json_pointer pointer("/extensions/KHR_materials_transmission");
+  if (!material.contains(pointer)) return;
+  const Json& transmission = material[pointer];
   out.transmission_factor = transmission.value("transmissionFactor", 0.0f);
   if (out.transmission_factor == 0) return;
   out.transmission_map = use_texture(transmission, "transmissionTexture", false, here);
-  if (transmission.contains("transmissionTexture") && out.transmission_map.texture == kNone) {
+  if (transmission.contains("transmissionTexture") && out.transmission_map.texture == no_index) {
     out.transmission_factor = 0;
   }
 }
@@ -146,8 +146,8 @@ TextureUse Materials::use_texture(const Json& owner, const char* key, bool alpha
   const auto number = (*info)["index"].get<std::size_t>();
   const auto image = image_of(gltf_.json["textures"][number], alpha, where);
   if (!image) return {};
-  static const Json::json_pointer kTransform("/extensions/KHR_texture_transform");
-  const Json transform = info->contains(kTransform) ? (*info)[kTransform] : Json::object();
+  static const Json::json_pointer transform_pointer("/extensions/KHR_texture_transform");
+  const Json transform = info->contains(transform_pointer) ? (*info)[transform_pointer] : Json::object();
   const int coordinates = transform.value("texCoord", info->value("texCoord", 0));
   if (coordinates > 1) {
     warnings_.add(gltf_.file, where, "asks for a texture coordinate set above TEXCOORD_1 and is left out");
@@ -159,9 +159,9 @@ TextureUse Materials::use_texture(const Json& owner, const char* key, bool alpha
 }
 
 std::optional<std::uint32_t> Materials::image_of(const Json& texture, bool alpha, const std::string& where) {
-  static const Json::json_pointer kWebp("/extensions/EXT_texture_webp/source"), kKtx2("/extensions/KHR_texture_basisu");
-  bool lacking = texture.contains(kKtx2);  // an image that is not decoded is left out
-  for (const Json& source : {texture.value("source", Json()), texture.value(kWebp, Json())}) {
+  static const Json::json_pointer webp("/extensions/EXT_texture_webp/source"), ktx2("/extensions/KHR_texture_basisu");
+  bool lacking = texture.contains(ktx2);  // an image that is not decoded is left out
+  for (const Json& source : {texture.value("source", Json()), texture.value(webp, Json())}) {
     if (source.is_null()) continue;
     const std::uint32_t image = use_image(source.get<std::size_t>());
     if (!is_ktx2(scene_.images[image].bytes)) return image;
@@ -185,9 +185,9 @@ void Materials::convert(const Json& glossy, bool alpha, const std::string& here,
   factors.glossiness_factor = glossy.value("glossinessFactor", 1.0f);
   TextureUse diffuse = use_texture(glossy, "diffuseTexture", alpha, where);
   TextureUse mirror = use_texture(glossy, "specularGlossinessTexture", false, where);
-  const bool colored = diffuse.texture != kNone, mirrored = mirror.texture != kNone;
+  const bool colored = diffuse.texture != no_index, mirrored = mirror.texture != no_index;
   if (!mirrored && glossy.contains("specularGlossinessTexture")) {  // without it the whole surface would be a mirror
-    factors.specular_factor = glm::min(factors.specular_factor, glm::vec3(kDielectric));
+    factors.specular_factor = glm::min(factors.specular_factor, glm::vec3(dielectric));
     factors.glossiness_factor = 0;
   }
   const bool alike = diffuse.uv1 == mirror.uv1 && diffuse.uv_transform == mirror.uv_transform;
@@ -220,9 +220,9 @@ void Materials::convert(const Json& glossy, bool alpha, const std::string& here,
 std::uint32_t Materials::use_converted(const SpecularGlossiness& factors, const TextureUse& like) {
   const auto known = std::find_if(converted_images_.begin(), converted_images_.end(),
                                   [&](const auto& each) { return each.first == factors; });
-  std::uint32_t image = known == converted_images_.end() ? kNone : known->second;
-  if (image == kNone) {
-    const std::uint32_t from = factors.diffuse == kNone ? factors.specular_glossiness : factors.diffuse;
+  std::uint32_t image = known == converted_images_.end() ? no_index : known->second;
+  if (image == no_index) {
+    const std::uint32_t from = factors.diffuse == no_index ? factors.specular_glossiness : factors.diffuse;
     const EncodedImage& source = scene_.images[from];
     scene_.images.push_back({source.name, source.where, {}, source.file, factors});
     image = fit_u32(scene_.images.size() - 1, "images");

@@ -20,10 +20,10 @@ struct MeshShape {
 };
 
 struct MeshUse {
-  std::uint32_t number = kNone;   // of Scene::meshes
-  std::size_t first_node = 0;     // that shows it
-  bool skinned = false;           // by one node at least
-  std::uint32_t joint_count = 0;  // that its vertices ask for; 0 where not all of them have joints
+  std::uint32_t number = no_index;  // of Scene::meshes
+  std::size_t first_node = 0;       // that shows it
+  bool skinned = false;             // by one node at least
+  std::uint32_t joint_count = 0;    // that its vertices ask for; 0 where not all of them have joints
 };
 
 using MeshUses = std::map<MeshShape, MeshUse>;

@@ -10,7 +10,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t kMostDecodedBytes = 1ull << 34;
+constexpr std::uint64_t most_decoded_bytes = 1ull << 34;
 
 void apply_filter(const std::string& filter, std::vector<std::uint8_t>& data, std::size_t count, std::size_t stride) {
   if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(data.data(), count, stride);
@@ -48,9 +48,9 @@ void decode_meshopt_views(Gltf& gltf) {
     const Json& view = gltf.json["bufferViews"][i];
     extensions[i] = meshopt_extension(view);
     if (extensions[i]) total += view["byteLength"].get<std::uint64_t>();
-    if (total > kMostDecodedBytes) {
+    if (total > most_decoded_bytes) {
       fail(gltf.file + ": " + place(gltf.json, "bufferViews", i), "the compressed views up to here have more than " +
-                                                                      std::to_string(kMostDecodedBytes) + " bytes (" +
+                                                                      std::to_string(most_decoded_bytes) + " bytes (" +
                                                                       std::to_string(total) + ")");
     }
   }

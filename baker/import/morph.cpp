@@ -9,7 +9,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t kMostMorphed = 1ull << 30;  // few bytes of a file can ask for any number of targets
+constexpr std::uint64_t most_morphed = 1ull << 30;  // few bytes of a file can ask for any number of targets
 
 /// Calls `add(vertex, weight · delta)` for each vertex.
 template <typename Add>
@@ -77,8 +77,8 @@ void add_morph_size(const Gltf& gltf, const tinygltf::Primitive& primitive, std:
       morphed += checked_accessor(gltf, accessor, where + ", morph target " + std::to_string(t) + ", " + name).count;
     }
   }
-  if (morphed > kMostMorphed) {
-    fail(where, "the morph targets up to here have more than " + std::to_string(kMostMorphed) + " vertices (" +
+  if (morphed > most_morphed) {
+    fail(where, "the morph targets up to here have more than " + std::to_string(most_morphed) + " vertices (" +
                     std::to_string(morphed) + ")");
   }
 }

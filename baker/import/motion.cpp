@@ -109,15 +109,15 @@ bool moves(const Motion& motion, const Json& skin) {
 /// Whether joints that stand as they do show a mesh as its bind pose, moved as a whole. `places`: the joints' in the
 /// world. What is compared is as far from the first joint as the skin is large, wherever in the world it stands.
 bool is_bind_pose(const std::vector<glm::dmat4>& world_from_bind, const std::vector<glm::dvec3>& places) {
-  constexpr double kRounding = 1e-4, kLeast_m = 0.01;  // of inverse bind matrices, which are floats
+  constexpr double rounding = 1e-4, least_m = 0.01;  // of inverse bind matrices, which are floats
   const auto largest = [](const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
   const glm::dmat4& first = world_from_bind[0];
-  double scale = 0, size_m = std::max(kLeast_m, largest(glm::dvec3(first[3]) - places[0]));
+  double scale = 0, size_m = std::max(least_m, largest(glm::dvec3(first[3]) - places[0]));
   for (int c = 0; c < 3; ++c) scale = std::max(scale, largest(glm::dvec3(first[c])));
   for (const glm::dvec3& place : places) size_m = std::max(size_m, largest(place - places[0]));
   return std::all_of(world_from_bind.begin(), world_from_bind.end(), [&](const glm::dmat4& each) {
     for (int c = 0; c < 4; ++c) {
-      if (largest(glm::dvec3(each[c]) - glm::dvec3(first[c])) > kRounding * (c == 3 ? size_m : scale)) return false;
+      if (largest(glm::dvec3(each[c]) - glm::dvec3(first[c])) > rounding * (c == 3 ? size_m : scale)) return false;
     }
     return true;
   });
@@ -161,7 +161,7 @@ void keep(std::size_t node, const std::vector<std::size_t>& parents, Flags& kept
 
 Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene& scene, Warnings& warnings) {
   const std::size_t count = gltf.model.nodes.size();
-  Motion motion{std::vector<std::uint32_t>(count, kNone), Flags(count, 0), {}, {}, {}};
+  Motion motion{std::vector<std::uint32_t>(count, no_index), Flags(count, 0), {}, {}, {}};
   Flags in_scene(count, 0), kept(count, 0);
   std::vector<std::size_t> parents(count, SIZE_MAX);
   std::vector<glm::dmat4> world(count);
@@ -192,7 +192,7 @@ Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene
     scene.nodes.push_back(node_record(gltf.model.nodes[each.node], each.parent_from_local));
     if (each.parent != SIZE_MAX) scene.nodes.back().parent = motion.node[each.parent];
   }
-  motion.skin.assign(used.size(), kNone);
+  motion.skin.assign(used.size(), no_index);
   motion.pose.resize(used.size());
   motion.placed.assign(used.size(), glm::dmat4(1));
   for (std::size_t s = 0; s < used.size(); ++s) {

@@ -10,7 +10,7 @@ namespace chandelier::baker {
 namespace {
 
 // A little beyond 1e-9 and 1e9, which are baked: 1e-9 cubed, and flattened by another 1e-9, is still a normal float.
-constexpr double kLeastScale = 0.999e-9, kMostScale = 1.001e9;
+constexpr double least_scale = 0.999e-9, most_scale = 1.001e9;
 
 glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where) {
   glm::dmat4 out(1);
@@ -34,8 +34,8 @@ glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where)
 
 /// KHR_node_visibility.
 bool is_visible(const Gltf& gltf, std::size_t node) {
-  static const Json::json_pointer kPath("/extensions/KHR_node_visibility/visible");
-  return gltf.json["nodes"][node].value(kPath, true);
+  static const Json::json_pointer pointer("/extensions/KHR_node_visibility/visible");
+  return gltf.json["nodes"][node].value(pointer, true);
 }
 
 std::vector<std::size_t> root_nodes(const Gltf& gltf, std::optional<std::size_t> scene) {
@@ -107,7 +107,7 @@ bool is_degenerate(const glm::dmat4& transform) {
   double volume = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = glm::length(linear[axis]);
-    if (!(length > kLeastScale && length < kMostScale)) return true;
+    if (!(length > least_scale && length < most_scale)) return true;
     volume *= length;
   }
   return !(std::abs(glm::determinant(linear)) > 1e-9 * volume);

@@ -10,7 +10,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kMostListed = 10;
+constexpr std::size_t most_listed = 10;
 
 std::optional<std::size_t> find_scene(const Json& json, const std::string& asked) {
   const std::size_t count = section_size(json, "scenes");
@@ -26,10 +26,10 @@ std::optional<std::size_t> find_scene(const Json& json, const std::string& asked
 [[noreturn]] void fail_unknown(const Gltf& gltf, const std::string& asked) {
   const std::size_t count = section_size(gltf.json, "scenes");
   std::string names;
-  for (std::size_t i = 0; i < std::min(count, kMostListed); ++i) {
+  for (std::size_t i = 0; i < std::min(count, most_listed); ++i) {
     names += (i ? ", " : "") + place(gltf.json, "scenes", i);
   }
-  if (count > kMostListed) names += " and " + std::to_string(count - kMostListed) + " more";
+  if (count > most_listed) names += " and " + std::to_string(count - most_listed) + " more";
   fail(gltf.file + ": --scene", "there is no such scene, but " + names + " (" + shortened(asked, 80) + ")");
 }
 

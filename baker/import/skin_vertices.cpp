@@ -9,7 +9,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr float kWholeTolerance = 0.01f;  // 8-bit weights that each are rounded sum to within 4 · 0.5 / 255 of 1
+constexpr float whole_tolerance = 0.01f;  // 8-bit weights that each are rounded sum to within 4 · 0.5 / 255 of 1
 
 bool is_unsigned_short(int type) {
   return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
@@ -64,7 +64,7 @@ std::vector<SkinVertex> read_skin_vertices(const Elements& joints, const Element
     for (std::size_t i = 0; i < count; ++i) {
       const std::array<float, 4> w = {shares[4 * i], shares[4 * i + 1], shares[4 * i + 2], shares[4 * i + 3]};
       if (*std::min_element(w.begin(), w.end()) < 0) return negative.note(first + i);
-      if (std::abs(w[0] + w[1] + w[2] + w[3] - 1) > kWholeTolerance) uneven.note(first + i);
+      if (std::abs(w[0] + w[1] + w[2] + w[3] - 1) > whole_tolerance) uneven.note(first + i);
       SkinVertex& vertex = out[first + i];
       vertex.weights = quantize_weights(w);
       for (std::size_t k = 0; k < 4; ++k) {

@@ -11,7 +11,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kMostComponents = 4;
+constexpr std::size_t most_components = 4;
 
 struct Attribute {
   std::string where;
@@ -23,7 +23,7 @@ struct Attribute {
 template <typename Put>
 void fill(Attribute& attribute, std::size_t first, std::size_t count, std::vector<Vertex>& vertices, Put put) {
   if (attribute.elements.count == 0) return;
-  float values[1024 * kMostComponents];
+  float values[1024 * most_components];
   const std::size_t bad = to_floats(attribute.elements, first, count, values);
   if (bad != SIZE_MAX) return attribute.not_finite.note(bad);
   const float* each = values;

@@ -11,7 +11,7 @@
 namespace chandelier::player {
 namespace {
 
-constexpr std::size_t kMostNames = 8;  // on stderr; --stats has them all
+constexpr std::size_t most_names = 8;  // on stderr; --stats has them all
 
 std::string name_of(const pack::File& pack, const World& world, LightId light) {
   const std::string_view name = pack.text(world.lights()[light].name);
@@ -20,9 +20,9 @@ std::string name_of(const pack::File& pack, const World& world, LightId light) {
 
 std::string in_words(const std::vector<SharedMap>& shared) {
   std::string text;
-  for (std::size_t i = 0; i < shared.size() && i < kMostNames; ++i)
+  for (std::size_t i = 0; i < shared.size() && i < most_names; ++i)
     text += fmt::format("{}{} ({}'s)", i == 0 ? "" : ", ", shared[i].light, shared[i].map_of);
-  if (shared.size() > kMostNames) text += fmt::format(", and {} more", shared.size() - kMostNames);
+  if (shared.size() > most_names) text += fmt::format(", and {} more", shared.size() - most_names);
   return text;
 }
 
@@ -36,7 +36,8 @@ void tell(const NamedRecipe& named, const Recipe& asked, const BudgetedPlan& pla
   const FrameStats one_each{.shadow_maps = shadowed, .shadow_bytes = shadowed * cube_bytes(named.recipe.face_size_px)};
   const bool is_limited = !keeps(one_each, budget);
   if (!plan.keeps_budget)
-    fmt::print(stderr, "chandelier-play: warning: {}: no {} meets the budget; this one needs {} shadow maps, {} bytes\n",
+    fmt::print(stderr,
+               "chandelier-play: warning: {}: no {} meets the budget; this one needs {} shadow maps, {} bytes\n",
                named.preset, by_error ? "selection" : "d-init", stats.shadow_maps, stats.shadow_bytes);
   if (plan.expected_rmse)
     fmt::print(stderr, "{}: {} makes {} shadow maps, expected RMSE {:.4f}\n", named.preset, how, stats.shadow_maps,
@@ -51,8 +52,8 @@ void tell(const NamedRecipe& named, const Recipe& asked, const BudgetedPlan& pla
   if (had_d_init && named.recipe.d_init_m == asked.d_init_m) return;
   const std::string wanted = had_d_init ? fmt::format("d-init {:.4g} m", asked.d_init_m)
                                         : fmt::format("a shadow map for each of {} lights", shadowed);
-  fmt::print(stderr, "{}: over budget with {}: {} makes {}; without a map of their own: {}\n", named.preset, wanted, how,
-             stats.shadow_maps, in_words(*named.shared_maps));
+  fmt::print(stderr, "{}: over budget with {}: {} makes {}; without a map of their own: {}\n", named.preset, wanted,
+             how, stats.shadow_maps, in_words(*named.shared_maps));
 }
 
 }  // namespace

@@ -19,10 +19,10 @@
 namespace chandelier::player {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr double kFine_m = 1024.0;       // floats up to half of it are at most 0.03 mm apart
-constexpr float kHighestPitch = 1.553f;  // radians: 89 degrees
-const glm::vec3 kUp(0.0f, 1.0f, 0.0f);
+constexpr float pi = std::numbers::pi_v<float>;
+constexpr double fine_m = 1024.0;        // floats up to half of it are at most 0.03 mm apart
+constexpr float highest_pitch = 1.553f;  // radians: 89 degrees
+const glm::vec3 up(0.0f, 1.0f, 0.0f);
 
 Camera named(const pack::Camera& from) {
   Camera camera;
@@ -75,14 +75,14 @@ std::optional<FileCamera> camera_from_numbers(std::string_view text) {
     at = after;
   }
   const glm::dvec3 eye_m(numbers[0], numbers[1], numbers[2]);
-  const glm::dvec3 from_m = glm::round(eye_m / kFine_m) * kFine_m;  // seen from there, floats are fine
+  const glm::dvec3 from_m = glm::round(eye_m / fine_m) * fine_m;  // seen from there, floats are fine
   const glm::vec3 eye(eye_m - from_m), target(glm::dvec3(numbers[3], numbers[4], numbers[5]) - from_m);
   const float distance = glm::distance(eye, target);
   const auto fov_deg = static_cast<float>(numbers[6]);
   if (at != end || !std::isfinite(glm::length(glm::vec3(eye_m))) || !(distance > 1e-6f) ||
       !std::isfinite(distance * distance) || !(fov_deg > 0.0f && fov_deg < 179.0f))
     return std::nullopt;
-  return FileCamera{eye_m, camera_looking_at(eye, target, fov_deg * kPi / 180.0f)};
+  return FileCamera{eye_m, camera_looking_at(eye, target, fov_deg * pi / 180.0f)};
 }
 
 std::string camera_numbers(const pack::View& pack, const Camera& camera) {
@@ -96,7 +96,7 @@ std::string camera_numbers(const pack::View& pack, const Camera& camera) {
   const glm::dvec3 target = eye + glm::dvec3(camera.forward_ws) * std::max(1.0, 1e4 * finest);
   return fmt::format("{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.4g}", rounded(eye.x), rounded(eye.y),
                      rounded(eye.z), rounded(target.x), rounded(target.y), rounded(target.z),
-                     camera.yfov_rad * 180.0f / kPi);
+                     camera.yfov_rad * 180.0f / pi);
 }
 
 Camera camera_looking_at(const glm::vec3& eye_ws, const glm::vec3& target_ws, float yfov_rad) {
@@ -105,7 +105,7 @@ Camera camera_looking_at(const glm::vec3& eye_ws, const glm::vec3& target_ws, fl
   camera.forward_ws = glm::normalize(target_ws - eye_ws);
   camera.yfov_rad = yfov_rad;
   const bool vertical = std::abs(camera.forward_ws.y) > 0.9999f;
-  const glm::vec3 about_up = vertical ? glm::vec3(0.0f, 0.0f, -1.0f) : kUp;
+  const glm::vec3 about_up = vertical ? glm::vec3(0.0f, 0.0f, -1.0f) : up;
   const glm::vec3 right = glm::normalize(glm::cross(camera.forward_ws, about_up));
   camera.up_ws = glm::cross(right, camera.forward_ws);
   return camera;
@@ -114,7 +114,7 @@ Camera camera_looking_at(const glm::vec3& eye_ws, const glm::vec3& target_ws, fl
 Camera camera_framing(const glm::vec3& bounds_min_ws, const glm::vec3& bounds_max_ws, float aspect) {
   const glm::vec3 center = 0.5f * (bounds_min_ws + bounds_max_ws);
   const float radius = std::max(0.5f * glm::length(bounds_max_ws - bounds_min_ws), 1e-3f);
-  const float yfov = 50.0f * kPi / 180.0f;
+  const float yfov = 50.0f * pi / 180.0f;
   // The box's sphere must fit the narrower of the two angles.
   const float half_angle = std::min(0.5f * yfov, std::atan(std::tan(0.5f * yfov) * aspect));
   const float distance = radius / std::sin(half_angle);
@@ -141,7 +141,7 @@ NamedCamera choose_camera(const pack::File& pack, const std::string& name, float
 void turn(Camera& camera, float yaw_rad, float pitch_rad) {
   const glm::vec3& f = camera.forward_ws;
   const float yaw = std::atan2(f.x, -f.z) + yaw_rad;
-  const float pitch = std::clamp(std::asin(std::clamp(f.y, -1.0f, 1.0f)) + pitch_rad, -kHighestPitch, kHighestPitch);
+  const float pitch = std::clamp(std::asin(std::clamp(f.y, -1.0f, 1.0f)) + pitch_rad, -highest_pitch, highest_pitch);
   const glm::vec3 forward(std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch));
   const Camera upright = camera_looking_at(glm::vec3(0.0f), forward, camera.yfov_rad);
   camera.forward_ws = upright.forward_ws;
@@ -150,7 +150,7 @@ void turn(Camera& camera, float yaw_rad, float pitch_rad) {
 
 void move(Camera& camera, const glm::vec3& right_up_forward_m) {
   const glm::vec3 right = glm::normalize(glm::cross(camera.forward_ws, camera.up_ws));
-  camera.eye_ws += right_up_forward_m.x * right + right_up_forward_m.y * kUp + right_up_forward_m.z * camera.forward_ws;
+  camera.eye_ws += right_up_forward_m.x * right + right_up_forward_m.y * up + right_up_forward_m.z * camera.forward_ws;
 }
 
 }  // namespace chandelier::player

@@ -22,8 +22,8 @@
 namespace chandelier::player {
 namespace {
 
-constexpr uint32_t kFramesUnlessAsked = 5;
-constexpr uint32_t kFramesBesideTruth = 1;  // which takes seconds for each, and whose time tells nothing
+constexpr uint32_t frames_unless_asked = 5;
+constexpr uint32_t frames_beside_truth = 1;  // which takes seconds for each, and whose time tells nothing
 
 struct Side {
   NamedRecipe named;
@@ -126,7 +126,7 @@ nlohmann::ordered_json to_json(const Comparison& comparison) {
           {"rmse", {{"linear", d.rmse_linear}, {"shown", d.rmse_shown}}},
           {"max_error", {{"linear", d.max_linear}, {"shown", d.max_shown}}},
           {"ssim", d.ssim ? nlohmann::ordered_json(*d.ssim) : nlohmann::ordered_json()},
-          {"flip", {{"mean", d.flip}, {"image", comparison.flip_image}, {"pixels_per_degree", kFlipPixelsPerDegree}}},
+          {"flip", {{"mean", d.flip}, {"image", comparison.flip_image}, {"pixels_per_degree", flip_pixels_per_degree}}},
           {"difference", {{"image", comparison.difference_image}, {"scale_shown", comparison.heat_scale}}}};
 }
 
@@ -139,7 +139,7 @@ void run_comparison(const Options& options, const NamedCamera& camera, const pac
   b.settings = render_settings(options, b.named.recipe, camera.camera, visibility);
   const bool truth = std::any_of(options.recipes.begin(), options.recipes.end(), traces_rays);
   draw_in_turns(renderer, pack, world, options.budget,
-                options.frames.value_or(truth ? kFramesBesideTruth : kFramesUnlessAsked), a, b);
+                options.frames.value_or(truth ? frames_beside_truth : frames_unless_asked), a, b);
 
   Comparison comparison;
   comparison.a = side_run(options, camera, device, a, 0);

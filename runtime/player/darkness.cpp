@@ -9,8 +9,8 @@
 namespace chandelier::player {
 namespace {
 
-constexpr uint8_t kDarkest = 8;           // of 255: what is not brighter looks black
-constexpr size_t kPixelsForOneLit = 500;  // with fewer lit ones the picture counts as black
+constexpr uint8_t darkest = 8;              // of 255: what is not brighter looks black
+constexpr size_t pixels_for_one_lit = 500;  // with fewer lit ones the picture counts as black
 
 void warn(const Options& options, const std::string& what) {
   fmt::print(stderr, "chandelier-play: warning: {}: {}\n", options.pack.string(), what);
@@ -29,7 +29,7 @@ bool is_dark_without_lights(const Options& options, const pack::View& pack) {
 }  // namespace
 
 float automatic_headlight(const Options& options, const pack::View& pack) {
-  return pack.lights.empty() && options.ambient == 0.0f ? kHeadlightOn : 0.0f;
+  return pack.lights.empty() && options.ambient == 0.0f ? headlight_on : 0.0f;
 }
 
 void warn_of_no_lights(const Options& asked, const Options& options, const pack::View& pack) {
@@ -49,9 +49,9 @@ bool is_black(const Picture& picture) {
   size_t lit = 0;
   for (size_t i = 0; i < pixels; ++i) {
     const uint8_t* const shown = &picture.shown[4 * i];
-    lit += std::max({shown[0], shown[1], shown[2]}) > kDarkest;
+    lit += std::max({shown[0], shown[1], shown[2]}) > darkest;
   }
-  return lit * kPixelsForOneLit < pixels;
+  return lit * pixels_for_one_lit < pixels;
 }
 
 void warn_of_black(const Options& options, const pack::View& pack, const Picture& picture) {

@@ -14,25 +14,25 @@
 namespace chandelier::player {
 namespace {
 
-constexpr uint32_t kColumns = 16, kRows = 9;
-constexpr float kGridAspect = 16.0f / 9.0f;  // whatever the picture's: another size shall not be another view
-constexpr size_t kMostLights = 512;          // that are asked, evenly from all
-constexpr size_t kMostShadowRays = 8;        // for a place, to what would be its brightest lights
-constexpr float kEnough = 0.1f;              // of the surfaces in view are lit
+constexpr uint32_t columns = 16, rows = 9;
+constexpr float grid_aspect = 16.0f / 9.0f;  // whatever the picture's: another size shall not be another view
+constexpr size_t most_lights = 512;          // that are asked, evenly from all
+constexpr size_t most_shadow_rays = 8;       // for a place, to what would be its brightest lights
+constexpr float enough = 0.1f;               // of the surfaces in view are lit
 
-constexpr size_t kPlaces = 4;  // to stand at, far from each other
-constexpr int kWays = 8;       // to step back from each
-constexpr float kStepBack = 0.85f;
-constexpr float kEyeHeight_m = 1.6f;
-constexpr float kEyeShare = 0.6f;         // of the height of a low room
-constexpr float kTargetShare = 0.8f;      // of the eye's height: a little down
-constexpr float kFarthestShare = 0.5f;    // of a light's range
-constexpr float kInsideYfov_rad = 1.05f;  // 60 degrees
-constexpr float kFarEnough_m = 30.0f;     // a farther surface is no better
-constexpr float kFarAway_m = 1e6f;
-constexpr int kMostFloors = 4;
+constexpr size_t places = 4;  // to stand at, far from each other
+constexpr int ways = 8;       // to step back from each
+constexpr float step_back = 0.85f;
+constexpr float eye_height_m = 1.6f;
+constexpr float eye_share = 0.6f;         // of the height of a low room
+constexpr float target_share = 0.8f;      // of the eye's height: a little down
+constexpr float farthest_share = 0.5f;    // of a light's range
+constexpr float inside_yfov_rad = 1.05f;  // 60 degrees
+constexpr float far_enough_m = 30.0f;     // a farther surface is no better
+constexpr float far_away_m = 1e6f;
+constexpr int most_floors = 4;
 
-const glm::vec3 kDown(0.0f, -1.0f, 0.0f);
+const glm::vec3 down(0.0f, -1.0f, 0.0f);
 
 struct Box {
   glm::vec3 low{INFINITY};
@@ -43,7 +43,7 @@ class Viewer {
  public:
   explicit Viewer(const pack::View& pack) : pack_(pack), rays_(pack), scene_(pack, rays_) {
     const size_t count = pack.lights.size();
-    const size_t asked = std::min(count, kMostLights);
+    const size_t asked = std::min(count, most_lights);
     for (size_t i = 0; i < asked; ++i) lights_.push_back(&pack.lights[i * count / asked]);
   }
 
@@ -84,7 +84,7 @@ bool Viewer::is_lit(const SeenPlace& place) const {
     const float lx = glm::dot(in.illuminance, glm::vec3(1.0f)) * glm::dot(place.normal_ws, in.to_light);
     if (lx > 0.0f) brightest.emplace_back(-lx, light);
   }
-  const size_t asked = std::min(brightest.size(), kMostShadowRays);
+  const size_t asked = std::min(brightest.size(), most_shadow_rays);
   std::partial_sort(brightest.begin(), brightest.begin() + static_cast<std::ptrdiff_t>(asked), brightest.end());
   return std::any_of(brightest.begin(), brightest.begin() + static_cast<std::ptrdiff_t>(asked), [&](const auto& each) {
     return each.second->shadowless != 0 || sees(rays_, *each.second, place.position_ws);
@@ -96,17 +96,17 @@ Viewer::Seen Viewer::see(const Camera& camera) const {
   const float half_height = std::tan(camera.yfov_rad * 0.5f);
   Seen seen;
   uint64_t rays_cast = 0;
-  for (uint32_t cell = 0; cell < kColumns * kRows; ++cell) {
-    const float x = 2.0f * (static_cast<float>(cell % kColumns) + 0.5f) / kColumns - 1.0f;
-    const float y = 1.0f - 2.0f * (static_cast<float>(cell / kColumns) + 0.5f) / kRows;
+  for (uint32_t cell = 0; cell < columns * rows; ++cell) {
+    const float x = 2.0f * (static_cast<float>(cell % columns) + 0.5f) / columns - 1.0f;
+    const float y = 1.0f - 2.0f * (static_cast<float>(cell / columns) + 0.5f) / rows;
     const glm::vec3 way =
-        glm::normalize(axes.forward + axes.right * (x * half_height * kGridAspect) + axes.up * (y * half_height));
+        glm::normalize(axes.forward + axes.right * (x * half_height * grid_aspect) + axes.up * (y * half_height));
     const auto hit = first_seen(scene_, camera.eye_ws, way, rays_cast);
     if (!hit || scene_.materials[hit->material].unlit) continue;
     ++seen.surfaces;
     if (!is_lit(seen_place(*hit, camera.eye_ws, way))) continue;
     ++seen.lit;
-    seen.reach_m += std::min(hit->distance_m, kFarEnough_m);
+    seen.reach_m += std::min(hit->distance_m, far_enough_m);
   }
   return seen;
 }
@@ -141,7 +141,7 @@ std::vector<const pack::Light*> Viewer::scattered_lights() const {
   std::vector<float> apart_m;
   for (const pack::Light* light : placed) apart_m.push_back(-glm::distance(light->position_ws, middle));
   std::vector<const pack::Light*> chosen;
-  while (chosen.size() < std::min(kPlaces, placed.size())) {
+  while (chosen.size() < std::min(places, placed.size())) {
     const auto farthest = std::max_element(apart_m.begin(), apart_m.end());
     const pack::Light* const light = placed[static_cast<size_t>(farthest - apart_m.begin())];
     for (size_t i = 0; i < placed.size(); ++i) {
@@ -162,11 +162,11 @@ struct Room {
 std::optional<Room> room_of(const rays::PackRays& rays, const glm::vec3& light_ws) {
   std::vector<Room> rooms;
   glm::vec3 from = light_ws;
-  for (int i = 0; i < kMostFloors; ++i) {
-    const auto hit = rays.first_hit(from, kDown, kFarAway_m);
+  for (int i = 0; i < most_floors; ++i) {
+    const auto hit = rays.first_hit(from, down, far_away_m);
     if (!hit) break;
     rooms.push_back({from.y - hit->distance_m, hit->distance_m});
-    from.y -= hit->distance_m + rays::PackRays::end_gap_m(light_ws, from + kDown * hit->distance_m);
+    from.y -= hit->distance_m + rays::PackRays::end_gap_m(light_ws, from + down * hit->distance_m);
   }
   if (rooms.empty()) return std::nullopt;
   float highest_m = 0.0f;
@@ -174,8 +174,8 @@ std::optional<Room> room_of(const rays::PackRays& rays, const glm::vec3& light_w
   const auto room =
       std::find_if(rooms.begin(), rooms.end(), [&](const Room& each) { return each.height_m >= 0.5f * highest_m; });
   if (room == rooms.begin()) {
-    const auto ceiling = rays.first_hit(light_ws, -kDown, kFarAway_m);
-    room->height_m += ceiling ? ceiling->distance_m : kFarAway_m;
+    const auto ceiling = rays.first_hit(light_ws, -down, far_away_m);
+    room->height_m += ceiling ? ceiling->distance_m : far_away_m;
   }
   return *room;
 }
@@ -183,19 +183,19 @@ std::optional<Room> room_of(const rays::PackRays& rays, const glm::vec3& light_w
 // Steps back from below the light as far as that goes, and looks to where it came from: past it to the other side.
 void Viewer::stand_near(const pack::Light& light, std::vector<Stand>& stands) const {
   const auto room = room_of(rays_, light.position_ws);
-  const float eye_m = room ? std::min(kEyeHeight_m, kEyeShare * room->height_m) : 0.0f;
+  const float eye_m = room ? std::min(eye_height_m, eye_share * room->height_m) : 0.0f;
   glm::vec3 place = light.position_ws;
   if (room) place.y = room->floor_y + eye_m;
-  const glm::vec3 target = place - glm::vec3(0.0f, (1.0f - kTargetShare) * eye_m, 0.0f);
-  for (int i = 0; i < kWays; ++i) {
-    const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / kWays;
+  const glm::vec3 target = place - glm::vec3(0.0f, (1.0f - target_share) * eye_m, 0.0f);
+  for (int i = 0; i < ways; ++i) {
+    const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / ways;
     const glm::vec3 back(std::cos(angle), 0.0f, std::sin(angle));
-    const float free_m = way_ahead_m(place, back, kFarthestShare * light.range_m);
-    const glm::vec3 eye = place + back * (kStepBack * free_m);
+    const float free_m = way_ahead_m(place, back, farthest_share * light.range_m);
+    const glm::vec3 eye = place + back * (step_back * free_m);
     if (!(glm::distance(eye, place) > 0.25f * eye_m) || !(glm::distance(eye, target) > 1e-6f)) continue;
-    Camera camera = camera_looking_at(eye, target, kInsideYfov_rad);
-    camera.znear_m = std::min(camera.znear_m, 0.5f * (1.0f - kStepBack) * free_m);
-    stands.push_back({camera, kStepBack * free_m});
+    Camera camera = camera_looking_at(eye, target, inside_yfov_rad);
+    camera.znear_m = std::min(camera.znear_m, 0.5f * (1.0f - step_back) * free_m);
+    stands.push_back({camera, step_back * free_m});
   }
 }
 
@@ -209,7 +209,7 @@ std::vector<Camera> Viewer::inside() const {
 }
 
 bool is_enough(const Viewer::Seen& seen) {
-  return seen.lit > 0 && static_cast<float>(seen.lit) >= kEnough * static_cast<float>(seen.surfaces);
+  return seen.lit > 0 && static_cast<float>(seen.lit) >= enough * static_cast<float>(seen.surfaces);
 }
 
 }  // namespace
@@ -221,13 +221,13 @@ NamedCamera default_view(const pack::View& pack, float aspect) {
   const NamedCamera whole{"", framing(all, aspect), origin_m, ChosenView::whole};
   if (pack.batch_instances.empty()) return whole;
   const Viewer viewer(pack);
-  const Viewer::Seen seen_whole = viewer.see(framing(all, kGridAspect));
+  const Viewer::Seen seen_whole = viewer.see(framing(all, grid_aspect));
   if (is_enough(seen_whole)) return whole;
 
   const Box box = viewer.unglowing();
   const bool is_smaller =
       box.low.x <= box.high.x && glm::distance(box.low, box.high) < 0.9f * glm::distance(all.low, all.high);
-  if (is_smaller && is_enough(viewer.see(framing(box, kGridAspect))))
+  if (is_smaller && is_enough(viewer.see(framing(box, grid_aspect))))
     return {"", framing(box, aspect), origin_m, ChosenView::without_sky};
 
   NamedCamera best = whole;

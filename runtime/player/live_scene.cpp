@@ -16,7 +16,7 @@ namespace chandelier::player {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kLookEvery{500};
+constexpr std::chrono::milliseconds look_every{500};
 
 void warn(const Options& options, std::string why) {
   std::replace(why.begin(), why.end(), '\n', ' ');
@@ -32,7 +32,7 @@ LiveScene::LiveScene(const Options& asked, std::unique_ptr<const Scene> scene, g
       device_(device),
       scene_(std::move(scene)),
       pack_camera_(scene_->camera.camera),
-      next_look_(Clock::now() + kLookEvery),
+      next_look_(Clock::now() + look_every),
       seen_(scene_->stamp),
       tried_(scene_->stamp) {
   settings = put_on_device(*scene_);
@@ -54,7 +54,7 @@ RenderSettings LiveScene::put_on_device(const Scene& scene) {
 
 bool LiveScene::follow() {
   if (Clock::now() < next_look_) return false;
-  next_look_ = Clock::now() + kLookEvery;
+  next_look_ = Clock::now() + look_every;
   const FileStamp stamp = stamp_of(asked_.pack);
   const bool is_still = stamp == std::exchange(seen_, stamp);  // else it may be half written
   if (!is_still || stamp == std::exchange(tried_, stamp)) return false;
@@ -66,7 +66,7 @@ bool LiveScene::follow() {
 }
 
 void LiveScene::toggle_headlight() {
-  const float strength = asked_.headlight.value_or(0.0f) > 0.0f ? *asked_.headlight : kHeadlightOn;
+  const float strength = asked_.headlight.value_or(0.0f) > 0.0f ? *asked_.headlight : headlight_on;
   settings.headlight = settings.headlight > 0.0f ? 0.0f : strength;
   headlight_ = settings.headlight;
 }

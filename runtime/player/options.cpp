@@ -33,8 +33,8 @@ void read_size(const std::string& text, Options& options) {
   const std::string_view view = text;
   if (x == std::string::npos || !whole_number(view.substr(0, x), options.width) ||
       !whole_number(view.substr(x + 1), options.height) || options.width < 1 || options.height < 1 ||
-      options.width > kLargestPicture || options.height > kLargestPicture)
-    throw UsageError(fmt::format("--size: must be WIDTHxHEIGHT, each from 1 to {} ({})", kLargestPicture, text));
+      options.width > largest_picture || options.height > largest_picture)
+    throw UsageError(fmt::format("--size: must be WIDTHxHEIGHT, each from 1 to {} ({})", largest_picture, text));
 }
 
 void read_exposure(const std::string& text, Options& options) {
@@ -55,7 +55,7 @@ void read_anisotropy(const std::string& text, Options& options) {
 
 void read_headlight(const std::string& text, Options& options) {
   if (text == "auto") return;
-  float strength = text == "on" ? kHeadlightOn : 0.0f;
+  float strength = text == "on" ? headlight_on : 0.0f;
   const bool is_named = text == "on" || text == "off";
   if (!is_named && (!CLI::detail::lexical_cast(text, strength) || !(strength >= 0.0f && strength <= 1e6f)))
     throw UsageError(fmt::format("--headlight: must be auto, on, off or a strength from 0 to 1e6 ({})", text));

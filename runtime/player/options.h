@@ -15,7 +15,7 @@
 
 namespace chandelier::player {
 
-constexpr float kHeadlightOn = 1.0f;  // as RenderSettings has it
+constexpr float headlight_on = 1.0f;  // as RenderSettings has it
 
 enum class Mode { list_devices, headless, compare, path, predict, window };
 

@@ -13,7 +13,7 @@
 namespace chandelier::player {
 namespace {
 
-constexpr std::string_view kStyle = R"(
+constexpr std::string_view page_style = R"(
 :root { color-scheme: light dark; --line: #8884; --dim: #777; --a: #4a7fd1; --b: #d9822b; }
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 1320px; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; margin: 0; } h2 { font-size: 1.1rem; margin: 2.2rem 0 .6rem; }
@@ -32,7 +32,7 @@ figure { margin: 0; } figcaption { color: var(--dim); padding-top: .3rem; }
 .columns { display: flex; flex-wrap: wrap; gap: 0 3rem; }
 )";
 
-constexpr std::string_view kScript = R"(
+constexpr std::string_view page_script = R"(
 const slider = document.querySelector('.slider');
 slider.querySelector('input').addEventListener('input', event => {
   slider.querySelector('.top').style.clipPath = `inset(0 0 0 ${event.target.value}%)`;
@@ -291,10 +291,10 @@ std::string report_html(const Comparison& c) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\">";
-  html += fmt::format("<title>{}</title><style>{}</style></head>\n<body>\n<h1>{}</h1>\n", title, kStyle, title);
+  html += fmt::format("<title>{}</title><style>{}</style></head>\n<body>\n<h1>{}</h1>\n", title, page_style, title);
   html += about(c) + pictures(c) + difference(c) + times(c);
   html += "<div class=\"columns\">\n" + counts(c) + recipes(c) + "</div>\n";
-  html += fmt::format("<script>{}</script>\n</body>\n</html>\n", kScript);
+  html += fmt::format("<script>{}</script>\n</body>\n</html>\n", page_script);
   return html;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kCounters{
+constexpr std::array all_counters{
     Counter{"lights", &FrameStats::lights, false},
     Counter{"lights_in_view", &FrameStats::lights_in_view, false},
     Counter{"shadowless_in_view", &FrameStats::shadowless_in_view, false},
@@ -101,7 +101,7 @@ Json centers_json(const std::vector<uint32_t>& centers) {
 }  // namespace
 
 std::span<const Counter> counters() {
-  return kCounters;
+  return all_counters;
 }
 
 FrameStats medians(std::span<const FrameStats> frames) {

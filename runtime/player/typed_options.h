@@ -13,7 +13,7 @@ class App;
 
 namespace chandelier::player {
 
-constexpr uint32_t kLargestPicture = 16384;  // texels a side; no Vulkan device draws more
+constexpr uint32_t largest_picture = 16384;  // texels a side; no Vulkan device draws more
 
 struct Typed {
   std::string pack, output, size = "1280x720", camera, stats, device, preset, exposure = "auto", headlight = "auto",

@@ -21,14 +21,14 @@
 namespace chandelier::player {
 namespace {
 
-constexpr float kCrossing_s = 10.0f;  // from one end of the scene to the other
-constexpr float kSlowest_m_per_s = 0.02f;
-constexpr float kFastest_m_per_s = 500.0f;
-constexpr float kFast = 4.0f;  // with Shift
-constexpr float kTurn_rad_per_px = 0.003f;
-constexpr float kLongestStep_s = 0.25f;       // a slow device must not throw the camera through a wall
-constexpr float kFirstStep_s = 1.0f / 60.0f;  // after a rest, in which nobody flew
-constexpr double kNap_s = 0.25;  // longest wait for something to happen: a signal and another pack are no events
+constexpr float crossing_s = 10.0f;  // from one end of the scene to the other
+constexpr float slowest_m_per_s = 0.02f;
+constexpr float fastest_m_per_s = 500.0f;
+constexpr float fast_factor = 4.0f;  // with Shift
+constexpr float turn_rad_per_px = 0.003f;
+constexpr float longest_step_s = 0.25f;       // a slow device must not throw the camera through a wall
+constexpr float first_step_s = 1.0f / 60.0f;  // after a rest, in which nobody flew
+constexpr double nap_s = 0.25;  // longest wait for something to happen: a signal and another pack are no events
 
 volatile std::sig_atomic_t asked_to_end = 0;
 std::string glfw_error;  // the last one's description
@@ -42,8 +42,8 @@ VkExtent2D framebuffer_size(GLFWwindow* window) {
 
 float speed_through(const pack::File& pack) {
   const pack::BakeInfo& info = *pack.view().bake_info;
-  return std::clamp(glm::distance(info.bounds_min_ws, info.bounds_max_ws) / kCrossing_s, kSlowest_m_per_s,
-                    kFastest_m_per_s);
+  return std::clamp(glm::distance(info.bounds_min_ws, info.bounds_max_ws) / crossing_s, slowest_m_per_s,
+                    fastest_m_per_s);
 }
 
 // Where the CPU draws, a second frame on its way would only be late.
@@ -54,8 +54,8 @@ uint32_t frames_in_flight(const gpu::Device& device) {
 std::string title(const LiveScene& live, const FrameStats& stats) {
   const Options& options = live.scene().options;
   return fmt::format("{}{}: {}, {:.1f} ms, {} lights, {} shadow maps", options.pack.filename().string(),
-                     live.is_older() ? " (an older one: the file cannot be read now)" : "", options.recipes.front().preset,
-                     stats.frame_ms, stats.lights, stats.shadow_maps);
+                     live.is_older() ? " (an older one: the file cannot be read now)" : "",
+                     options.recipes.front().preset, stats.frame_ms, stats.lights, stats.shadow_maps);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ struct Window::Impl {
   }
   static void on_scroll(GLFWwindow* window, double, double y) {
     float& speed = of(window).speed_m_per_s;
-    speed = std::clamp(speed * (y > 0.0 ? 1.25f : 0.8f), kSlowest_m_per_s, kFastest_m_per_s);
+    speed = std::clamp(speed * (y > 0.0 ? 1.25f : 0.8f), slowest_m_per_s, fastest_m_per_s);
   }
   static void on_refresh(GLFWwindow* window) { of(window).is_covered = true; }
 
@@ -105,8 +105,8 @@ struct Window::Impl {
     }
     glfwGetCursorPos(window, &x, &y);
     if (looking && (x != cursor_x || y != cursor_y))
-      turn(camera, static_cast<float>(x - cursor_x) * kTurn_rad_per_px,
-           static_cast<float>(cursor_y - y) * kTurn_rad_per_px);
+      turn(camera, static_cast<float>(x - cursor_x) * turn_rad_per_px,
+           static_cast<float>(cursor_y - y) * turn_rad_per_px);
     cursor_x = x;
     cursor_y = y;
   }
@@ -116,7 +116,7 @@ struct Window::Impl {
       return static_cast<float>(is_held(plus)) - static_cast<float>(is_held(minus));
     };
     const bool fast = is_held(Does::faster) || glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
-    const float step_m = speed_m_per_s * (fast ? kFast : 1.0f) * std::min(seconds, kLongestStep_s);
+    const float step_m = speed_m_per_s * (fast ? fast_factor : 1.0f) * std::min(seconds, longest_step_s);
     move(camera, step_m * glm::vec3(axis(Does::left, Does::right), axis(Does::down, Does::up),
                                     axis(Does::back, Does::forward)));
   }
@@ -281,11 +281,11 @@ void Window::run(LiveScene& live, const gpu::Device& device) {
   while (!glfwWindowShouldClose(window) && asked_to_end == 0 &&
          screen.frames_shown() < most_frames.value_or(UINT32_MAX)) {
     if (is_idle)
-      glfwWaitEventsTimeout(kNap_s);
+      glfwWaitEventsTimeout(nap_s);
     else
       glfwPollEvents();
     const auto now = std::chrono::steady_clock::now();
-    const float seconds = is_idle ? kFirstStep_s : std::chrono::duration<float>(now - before).count();
+    const float seconds = is_idle ? first_step_s : std::chrono::duration<float>(now - before).count();
     before = now;
     is_idle = impl_->is_minimised();
     if (is_idle) continue;

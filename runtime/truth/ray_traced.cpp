@@ -22,9 +22,9 @@
 namespace chandelier::truth {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 4096;  // of a thread
-constexpr std::size_t kRaysAtOnce = 8;
-constexpr uint32_t kRaysToDisc = 32;  // from a point to a light with a radius
+constexpr std::size_t points_at_once = 4096;  // of a thread
+constexpr std::size_t rays_at_once = 8;
+constexpr uint32_t rays_to_disc = 32;  // from a point to a light with a radius
 
 // A triangle's corner as an alpha test needs it. Every part of it changes evenly over the triangle.
 struct AlphaCorner {
@@ -245,7 +245,7 @@ class Disc {
   }
 
   Sight sight(uint32_t i) const {
-    const glm::vec2 at = disc_point(i, kRaysToDisc, turn_);
+    const glm::vec2 at = disc_point(i, rays_to_disc, turn_);
     Sight to_place = to_middle_;
     to_place.way += at.x * across_ + at.y * up_;
     return to_place;
@@ -259,13 +259,13 @@ class Disc {
 
 // Ways that are looked along together.
 struct Bundle {
-  alignas(32) std::array<int, kRaysAtOnce> valid{};
+  alignas(32) std::array<int, rays_at_once> valid{};
   RTCRay8 rays{};
-  std::array<std::size_t, kRaysAtOnce> point{};
+  std::array<std::size_t, rays_at_once> point{};
   std::size_t count = 0;
 
   void add(const Sight& way, std::size_t number, RTCScene scene, std::span<uint8_t> lit) {
-    if (count == kRaysAtOnce) look(scene, lit);
+    if (count == rays_at_once) look(scene, lit);
     const std::size_t i = count++;
     valid[i] = -1;
     point[i] = number;
@@ -289,7 +289,7 @@ struct Bundle {
 };
 
 void RayScene::answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const {
-  const uint32_t rays = query.radius_m > 0.0f ? kRaysToDisc : 1;
+  const uint32_t rays = query.radius_m > 0.0f ? rays_to_disc : 1;
   const glm::vec3 eye = query.eye_ws - origin_ws_, light = query.light.position_ws - origin_ws_;
   const auto lit = query.visibility;  // first how many rays of each point
   Bundle bundle;
@@ -309,9 +309,9 @@ void RayScene::answer_part(const VisibilityQuery& query, std::size_t first, std:
 }
 
 void RayScene::answer(const VisibilityQuery& query) const {
-  const std::size_t parts = (query.points.size() + kPointsAtOnce - 1) / kPointsAtOnce;
+  const std::size_t parts = (query.points.size() + points_at_once - 1) / points_at_once;
   pack::parallel_for(parts, 0, [&](std::size_t part) {
-    answer_part(query, part * kPointsAtOnce, std::min(query.points.size(), (part + 1) * kPointsAtOnce));
+    answer_part(query, part * points_at_once, std::min(query.points.size(), (part + 1) * points_at_once));
   });
 }
 

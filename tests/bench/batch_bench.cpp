@@ -23,7 +23,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t kMost = 100, kMeshletVertices = 255;
+constexpr std::size_t most_triangles = 100, meshlet_vertices = 255;
 
 /// Corners of all triangles, batch after batch.
 struct Batches {
@@ -50,30 +50,31 @@ void append(const PackedPrimitive& primitive, const BatchOrder& order, Batches& 
 
 Batches by_sah(const PackedPrimitive& primitive) {
   Batches out;
-  append(primitive, split_into_batches(boxes_of(primitive, -1), kMost), out);
+  append(primitive, split_into_batches(boxes_of(primitive, -1), most_triangles), out);
   return out;
 }
 
 Batches by_sah_closed_apart(const PackedPrimitive& primitive) {
   Batches out;
-  for (const int closed : {1, 0}) append(primitive, split_into_batches(boxes_of(primitive, closed), kMost), out);
+  for (const int closed : {1, 0})
+    append(primitive, split_into_batches(boxes_of(primitive, closed), most_triangles), out);
   return out;
 }
 
 Batches by_index(const PackedPrimitive& primitive) {
   Batches out{primitive.indices, {}};
   for (std::size_t left = primitive.triangle_count(); left > 0; left -= out.counts.back()) {
-    out.counts.push_back(static_cast<std::uint32_t>(std::min(left, kMost)));
+    out.counts.push_back(static_cast<std::uint32_t>(std::min(left, most_triangles)));
   }
   return out;
 }
 
 template <typename Build>
 Batches by_meshlets(const PackedPrimitive& primitive, Build build) {
-  const std::size_t bound = meshopt_buildMeshletsBound(primitive.indices.size(), kMeshletVertices, kMost);
+  const std::size_t bound = meshopt_buildMeshletsBound(primitive.indices.size(), meshlet_vertices, most_triangles);
   std::vector<meshopt_Meshlet> meshlets(bound);
-  std::vector<std::uint32_t> vertices(bound * kMeshletVertices);
-  std::vector<std::uint8_t> corners(bound * kMost * 3);
+  std::vector<std::uint32_t> vertices(bound * meshlet_vertices);
+  std::vector<std::uint8_t> corners(bound * most_triangles * 3);
   meshlets.resize(build(meshlets.data(), vertices.data(), corners.data()));
   Batches out;
   for (const meshopt_Meshlet& meshlet : meshlets) {
@@ -91,7 +92,7 @@ Batches by_buildMeshlets(const PackedPrimitive& primitive) {
   return by_meshlets(primitive, [&](auto* meshlets, auto* vertices, auto* corners) {
     return meshopt_buildMeshlets(meshlets, vertices, corners, order.data(), order.size(),
                                  &primitive.vertices[0].position_ls.x, primitive.vertices.size(), sizeof(PackedVertex),
-                                 kMeshletVertices, kMost, 0.0f);
+                                 meshlet_vertices, most_triangles, 0.0f);
   });
 }
 
@@ -101,7 +102,7 @@ Batches by_spatialSort(const PackedPrimitive& primitive) {
                                &primitive.vertices[0].position_ls.x, primitive.vertices.size(), sizeof(PackedVertex));
   return by_meshlets(primitive, [&](auto* meshlets, auto* vertices, auto* corners) {
     return meshopt_buildMeshletsScan(meshlets, vertices, corners, order.data(), order.size(), primitive.vertices.size(),
-                                     kMeshletVertices, kMost);
+                                     meshlet_vertices, most_triangles);
   });
 }
 

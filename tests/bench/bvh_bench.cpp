@@ -46,7 +46,7 @@ Scene file(const char* name) {
   for (Material& material : scene.materials) {
     for (TextureUse* use : {&material.base_color, &material.metallic_roughness, &material.normal, &material.occlusion,
                             &material.emissive_map}) {
-      use->texture = kNone;
+      use->texture = no_index;
     }
   }
   return scene;

@@ -89,15 +89,15 @@ TEST_F(LiveSceneTest, ShowsACopyOfItsFile) {
 TEST_F(LiveSceneTest, TheHeadlightFollowsThePackUntilItIsToggled) {
   put(hall(0, 6));
   LiveScene live = open({});
-  EXPECT_EQ(live.settings.headlight, kHeadlightOn);
+  EXPECT_EQ(live.settings.headlight, headlight_on);
   put(hall(3, 6));
   follow_until(live, [&] { return lights(live) == 3; });
   EXPECT_EQ(live.settings.headlight, 0.0f);
   live.toggle_headlight();
-  EXPECT_EQ(live.settings.headlight, kHeadlightOn);
+  EXPECT_EQ(live.settings.headlight, headlight_on);
   put(hall(4, 6));
   follow_until(live, [&] { return lights(live) == 4; });
-  EXPECT_EQ(live.settings.headlight, kHeadlightOn);
+  EXPECT_EQ(live.settings.headlight, headlight_on);
   live.toggle_headlight();
   put(hall(0, 7));
   follow_until(live, [&] { return lights(live) == 0; });

@@ -25,33 +25,34 @@ Scene with_integer_positions(int component_type, bool normalized, const std::vec
 }
 
 TEST(Accessor, ReadsPlainIntegersOfEachType) {
-  const Scene bytes = with_integer_positions<std::int8_t>(kByte, false, {-128, 0, 127, 1, 0, 0, 0, 1, 0});
+  const Scene bytes = with_integer_positions<std::int8_t>(byte_type, false, {-128, 0, 127, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(bytes, 0), glm::vec3(-128, 0, 127));
   const Scene unsigned_bytes =
-      with_integer_positions<std::uint8_t>(kUnsignedByte, false, {255, 0, 7, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<std::uint8_t>(unsigned_byte_type, false, {255, 0, 7, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_bytes, 0), glm::vec3(255, 0, 7));
-  const Scene shorts = with_integer_positions<std::int16_t>(kShort, false, {-32768, 0, 32767, 1, 0, 0, 0, 1, 0});
+  const Scene shorts = with_integer_positions<std::int16_t>(short_type, false, {-32768, 0, 32767, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(shorts, 0), glm::vec3(-32768, 0, 32767));
   const Scene unsigned_shorts =
-      with_integer_positions<std::uint16_t>(kUnsignedShort, false, {65535, 0, 7, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<std::uint16_t>(unsigned_short_type, false, {65535, 0, 7, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_shorts, 0), glm::vec3(65535, 0, 7));
   const Scene unsigned_ints =
-      with_integer_positions<std::uint32_t>(kUnsignedInt, false, {1u << 31, 0, 7, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<std::uint32_t>(unsigned_int_type, false, {1u << 31, 0, 7, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_ints, 0), glm::vec3(2147483648.0f, 0, 7));
 }
 
 TEST(Accessor, NormalizesAsGltfSays) {
   // The most negative value and its neighbour are both -1.
-  const Scene bytes = with_integer_positions<std::int8_t>(kByte, true, {-128, -127, 127, 1, 0, 0, 0, 1, 0});
+  const Scene bytes = with_integer_positions<std::int8_t>(byte_type, true, {-128, -127, 127, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(bytes, 0), glm::vec3(-1, -1, 1));
   EXPECT_FLOAT_EQ(position(bytes, 1).x, 1.0f / 127);
   const Scene unsigned_bytes =
-      with_integer_positions<std::uint8_t>(kUnsignedByte, true, {255, 0, 51, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<std::uint8_t>(unsigned_byte_type, true, {255, 0, 51, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_bytes, 0), glm::vec3(1, 0, 0.2f));
-  const Scene shorts = with_integer_positions<std::int16_t>(kShort, true, {-32768, -32767, 32767, 1, 0, 0, 0, 1, 0});
+  const Scene shorts =
+      with_integer_positions<std::int16_t>(short_type, true, {-32768, -32767, 32767, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(shorts, 0), glm::vec3(-1, -1, 1));
   const Scene unsigned_shorts =
-      with_integer_positions<std::uint16_t>(kUnsignedShort, true, {65535, 0, 13107, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<std::uint16_t>(unsigned_short_type, true, {65535, 0, 13107, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_shorts, 0), glm::vec3(1, 0, 0.2f));
 }
 
@@ -60,9 +61,9 @@ TEST(Accessor, HonoursStrideAndBothOffsets) {
   gltf.add_view<float>({99, 99});  // so that the view does not start at byte 0
   // Vertices of 16 bytes: one float that is not ours, then the position.
   const int view = gltf.add_view<float>({-1, 1, 2, 3, -1, 4, 5, 6, -1, 7, 8, 10}, 16);
-  const int accessor =
-      gltf.append("accessors",
-                  {{"bufferView", view}, {"byteOffset", 4}, {"componentType", kFloat}, {"type", "VEC3"}, {"count", 3}});
+  const int accessor = gltf.append(
+      "accessors",
+      {{"bufferView", view}, {"byteOffset", 4}, {"componentType", float_type}, {"type", "VEC3"}, {"count", 3}});
   const Scene scene = with_positions(gltf, accessor);
   EXPECT_EQ(position(scene, 0), glm::vec3(1, 2, 3));
   EXPECT_EQ(position(scene, 1), glm::vec3(4, 5, 6));
@@ -84,21 +85,21 @@ void expect_sparse_index_type(int component_type) {
 }
 
 TEST(Accessor, ReplacesSparseElements) {
-  expect_sparse_index_type<std::uint8_t>(kUnsignedByte);
-  expect_sparse_index_type<std::uint16_t>(kUnsignedShort);
-  expect_sparse_index_type<std::uint32_t>(kUnsignedInt);
+  expect_sparse_index_type<std::uint8_t>(unsigned_byte_type);
+  expect_sparse_index_type<std::uint16_t>(unsigned_short_type);
+  expect_sparse_index_type<std::uint32_t>(unsigned_int_type);
 }
 
 TEST(Accessor, IsZeroWhereSparseDataHasNoBase) {
   GltfBuilder gltf;
   const int accessor = gltf.append(
       "accessors",
-      {{"componentType", kFloat},
+      {{"componentType", float_type},
        {"type", "VEC3"},
        {"count", 3},
        {"sparse",
         {{"count", 2},
-         {"indices", {{"bufferView", gltf.add_view<std::uint8_t>({1, 2})}, {"componentType", kUnsignedByte}}},
+         {"indices", {{"bufferView", gltf.add_view<std::uint8_t>({1, 2})}, {"componentType", unsigned_byte_type}}},
          {"values", {{"bufferView", gltf.add_view<float>({1, 0, 0, 0, 1, 0})}}}}}});
   const Scene scene = with_positions(gltf, accessor);
   EXPECT_EQ(position(scene, 0), glm::vec3(0, 0, 0));
@@ -109,12 +110,12 @@ TEST(Accessor, IsZeroWhereSparseDataHasNoBase) {
 TEST(Accessor, ReadsIndicesThatAreAllSparse) {
   GltfBuilder gltf = one_triangle();
   gltf.json["accessors"][1] = {
-      {"componentType", kUnsignedShort},
+      {"componentType", unsigned_short_type},
       {"type", "SCALAR"},
       {"count", 3},
       {"sparse",
        {{"count", 2},
-        {"indices", {{"bufferView", gltf.add_view<std::uint8_t>({1, 2})}, {"componentType", kUnsignedByte}}},
+        {"indices", {{"bufferView", gltf.add_view<std::uint8_t>({1, 2})}, {"componentType", unsigned_byte_type}}},
         {"values", {{"bufferView", gltf.add_view<std::uint16_t>({1, 2})}}}}}};
   EXPECT_EQ(gltf.bake().bake_info.unique_triangles, 1u);
 }
@@ -132,9 +133,9 @@ void expect_index_type(int component_type) {
 }
 
 TEST(Accessor, ReadsIndicesOfEachWidth) {
-  expect_index_type<std::uint8_t>(kUnsignedByte);
-  expect_index_type<std::uint16_t>(kUnsignedShort);
-  expect_index_type<std::uint32_t>(kUnsignedInt);
+  expect_index_type<std::uint8_t>(unsigned_byte_type);
+  expect_index_type<std::uint16_t>(unsigned_short_type);
+  expect_index_type<std::uint32_t>(unsigned_int_type);
 }
 
 }  // namespace

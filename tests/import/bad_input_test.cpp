@@ -22,7 +22,7 @@ Json& primitive(GltfBuilder& gltf) {
 }
 
 // The triangle's accessors: 0 POSITION, 1 indices.
-const Case kCases[] = {
+const Case cases[] = {
     {"no asset", [](GltfBuilder& g) { g.json.erase("asset"); }, "glTF: has no asset"},
     {"old version", [](GltfBuilder& g) { g.json["asset"]["version"] = "1.0"; },
      "glTF, asset, version: is not 2.x (\"1.0\")"},
@@ -147,7 +147,7 @@ const Case kCases[] = {
      [](GltfBuilder& g) {
        // Strips of 100 000 vertices: with flat normals 3 corners of 64 bytes and the vertex's own 60 for each.
        const int position = g.append("accessors", {{"bufferView", g.add_view(std::vector<std::int8_t>(400000), 4)},
-                                                   {"componentType", kByte},
+                                                   {"componentType", byte_type},
                                                    {"type", "VEC3"},
                                                    {"count", 100000}});
        const Json strip = {{"mode", 5}, {"attributes", {{"POSITION", position}}}};
@@ -224,7 +224,7 @@ const Case kCases[] = {
      [](GltfBuilder& g) {
        g.json["accessors"][0]["sparse"] = {
            {"count", 1},
-           {"indices", {{"bufferView", g.add_view<std::uint8_t>({9})}, {"componentType", kUnsignedByte}}},
+           {"indices", {{"bufferView", g.add_view<std::uint8_t>({9})}, {"componentType", unsigned_byte_type}}},
            {"values", {{"bufferView", g.add_view<float>({0, 0, 0})}}}};
      },
      "mesh 0, primitive 0, attribute POSITION, sparse indices: index is out of range (9)"},
@@ -232,7 +232,7 @@ const Case kCases[] = {
      [](GltfBuilder& g) {
        g.json["accessors"][0]["sparse"] = {
            {"count", 2},
-           {"indices", {{"bufferView", g.add_view<std::uint8_t>({0, 1})}, {"componentType", kUnsignedByte}}},
+           {"indices", {{"bufferView", g.add_view<std::uint8_t>({0, 1})}, {"componentType", unsigned_byte_type}}},
            {"values", {{"bufferView", g.add_view<float>({0, 0, 0})}}}};
      },
      "mesh 0, primitive 0, attribute POSITION, sparse values: accessor ends past buffer view 3 (2 elements of 12 "
@@ -299,7 +299,7 @@ const Case kCases[] = {
 };
 
 TEST(BadInput, IsRefusedWithPlaceFaultAndValue) {
-  for (const Case& each : kCases) {
+  for (const Case& each : cases) {
     GltfBuilder gltf = one_triangle();
     each.spoil(gltf);
     const std::filesystem::path path = gltf.save("bad");

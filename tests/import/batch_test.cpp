@@ -35,7 +35,7 @@ GltfBuilder sheet(int side) {
   GltfBuilder gltf;
   const int position = gltf.add_floats(positions, "VEC3", 3), normal = gltf.add_floats(normals, "VEC3", 3);
   gltf.add_mesh({{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
-                 {"indices", gltf.add_accessor(indices, kUnsignedInt, "SCALAR", indices.size())}});
+                 {"indices", gltf.add_accessor(indices, unsigned_int_type, "SCALAR", indices.size())}});
   gltf.add_node({{"mesh", 0}});
   return gltf;
 }
@@ -187,10 +187,10 @@ TEST(Batches, AreSmallInSpace) {
 
 TEST(Batches, AreMadeOfAFanInReasonableTime) {
   // 100 000 triangles around one vertex: not a matter of half a minute, and the batches are full.
-  constexpr int kTriangles = 100000;
+  constexpr int triangle_count = 100000;
   std::vector<float> positions = {0, 0, 0}, normals = {0, 0, 1};
-  for (int i = 0; i <= kTriangles; ++i) {
-    const double angle = 2 * M_PI * i / kTriangles;
+  for (int i = 0; i <= triangle_count; ++i) {
+    const double angle = 2 * M_PI * i / triangle_count;
     positions.insert(positions.end(), {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
     normals.insert(normals.end(), {0, 0, 1});
   }
@@ -199,7 +199,7 @@ TEST(Batches, AreMadeOfAFanInReasonableTime) {
   gltf.add_mesh({{"mode", 6}, {"attributes", {{"POSITION", position}, {"NORMAL", normal}}}});
   gltf.add_node({{"mesh", 0}});
   const pack::Contents pack = gltf.bake({.position_error_m = 0});
-  EXPECT_EQ(pack.indices.size(), 3u * kTriangles);
+  EXPECT_EQ(pack.indices.size(), 3u * triangle_count);
   EXPECT_LE(pack.batches.size(), 1350u);
   float area = 0;  // of pieces of the rim: about a thousand boxes of a slice each, not of the whole disc
   for (const pack::Batch& batch : pack.batches) {

@@ -46,7 +46,7 @@ void expect_tree(std::span<const pack::BvhNode> nodes, std::span<const pack::Nod
   ASSERT_EQ(nodes[first].skip, end);
   for (std::uint32_t i = first; i < end; ++i) {
     const pack::BvhNode& node = nodes[i];
-    Box box{glm::vec3(kMost), glm::vec3(-kMost)};
+    Box box{glm::vec3(largest_float), glm::vec3(-largest_float)};
     double area_m2 = 0;
     const auto add = [&](const glm::vec3& low, const glm::vec3& high, float area) {
       box.low = glm::min(box.low, low);
@@ -72,7 +72,8 @@ void expect_tree(std::span<const pack::BvhNode> nodes, std::span<const pack::Nod
     }
     ASSERT_EQ(node.bounds_min, box.low);
     ASSERT_EQ(node.bounds_max, box.high);
-    ASSERT_NEAR(areas[i].area_m2, std::min<double>(area_m2, kMost), 1e-3 * std::min<double>(area_m2, kMost));
+    ASSERT_NEAR(areas[i].area_m2, std::min<double>(area_m2, largest_float),
+                1e-3 * std::min<double>(area_m2, largest_float));
   }
 }
 

@@ -13,7 +13,7 @@
 
 namespace chandelier::baker::test {
 
-constexpr float kMost = std::numeric_limits<float>::max();
+constexpr float largest_float = std::numeric_limits<float>::max();
 
 struct Box {
   glm::vec3 low, high;

@@ -168,7 +168,8 @@ TEST(Bvh, TakesWhatIsHugeTinyOrFlat) {
     expect_tree_of(build(items), items.size());
   }
   std::vector<BvhItem> ends, flat = random_items(2000, 1, 4);
-  for (std::uint32_t i = 0; i < 100; ++i) ends.push_back(item(i, glm::vec3(i % 2 ? -kMost : kMost), glm::vec3(kMost)));
+  for (std::uint32_t i = 0; i < 100; ++i)
+    ends.push_back(item(i, glm::vec3(i % 2 ? -largest_float : largest_float), glm::vec3(largest_float)));
   for (BvhItem& each : flat) each.low.y = each.high.y = 7;
   expect_tree_of(build(ends), ends.size());
   expect_tree_of(build(flat), flat.size());
@@ -176,11 +177,11 @@ TEST(Bvh, TakesWhatIsHugeTinyOrFlat) {
 
 /// Groups of 90 neighbours, treelets of each in `parts` blocks, one tree.
 Tree build_of_treelets(std::vector<BvhItem> items, std::size_t parts) {
-  constexpr std::size_t kGroup = 90;
+  constexpr std::size_t group = 90;
   shape_bvh(items);  // neighbours side by side
   std::vector<Treelets> treelets(parts);
-  for (std::size_t first = 0; first < items.size(); first += kGroup) {
-    shape_treelets(std::span(items).subspan(first, std::min(kGroup, items.size() - first)),
+  for (std::size_t first = 0; first < items.size(); first += group) {
+    shape_treelets(std::span(items).subspan(first, std::min(group, items.size() - first)),
                    static_cast<std::uint32_t>(first), treelets[first * parts / items.size()]);
   }
   std::vector<std::uint32_t> order;
@@ -208,7 +209,7 @@ TEST(Bvh, OfTreeletsTakesWhatCannotBeCut) {
   std::vector<BvhItem> same, ends;
   for (std::uint32_t i = 0; i < 20000; ++i) {
     same.push_back(item(i, {1, 2, 3}, {2, 3, 4}));
-    ends.push_back(item(i, glm::vec3(i % 2 ? -kMost : kMost), glm::vec3(kMost)));
+    ends.push_back(item(i, glm::vec3(i % 2 ? -largest_float : largest_float), glm::vec3(largest_float)));
   }
   expect_tree_of(build_of_treelets(same, 1), same.size());
   expect_tree_of(build_of_treelets(ends, 1), ends.size());

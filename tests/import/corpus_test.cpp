@@ -14,7 +14,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-const std::filesystem::path kData = CHANDELIER_DATA_DIR;
+const std::filesystem::path data = CHANDELIER_DATA_DIR;
 
 std::vector<std::filesystem::path> gltfs_below(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> out;
@@ -62,22 +62,22 @@ std::size_t bake_all(const std::filesystem::path& folder) {
 }
 
 TEST(Corpus, BakesTheKhronosModels) {
-  const std::filesystem::path folder = kData / "models" / "khronos";
+  const std::filesystem::path folder = data / "models" / "khronos";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   EXPECT_GE(bake_all(folder), 40u);
 }
 
 TEST(Corpus, BakesTheKitsAndTheOtherModels) {
-  if (!std::filesystem::exists(kData / "kits")) GTEST_SKIP() << "no " << kData / "kits";
-  std::size_t baked = bake_all(kData / "kits");
-  for (const auto& entry : std::filesystem::directory_iterator(kData / "models")) {
+  if (!std::filesystem::exists(data / "kits")) GTEST_SKIP() << "no " << data / "kits";
+  std::size_t baked = bake_all(data / "kits");
+  for (const auto& entry : std::filesystem::directory_iterator(data / "models")) {
     if (entry.is_directory() && entry.path().filename() != "khronos") baked += bake_all(entry.path());
   }
   EXPECT_GE(baked, 400u);
 }
 
 /// Errors of the validator that a bake need not tell, as baker/README.md says: by code, why they do no harm.
-const std::map<std::string, std::string> kHarmless = {
+const std::map<std::string, std::string> harmless = {
     {"ACCESSOR_ELEMENT_OUT_OF_MAX_BOUND", "bounds are computed anew"},
     {"ACCESSOR_ELEMENT_OUT_OF_MIN_BOUND", "bounds are computed anew"},
     {"ACCESSOR_MAX_MISMATCH", "bounds are computed anew"},
@@ -98,7 +98,7 @@ const std::map<std::string, std::string> kHarmless = {
     {"MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", "coordinates that lack are 0"}};
 
 /// Of the others, what some warning must say where the file is baked.
-const std::multimap<std::string, std::string> kTold = {
+const std::multimap<std::string, std::string> told = {
     {"ACCESSOR_ANIMATION_INPUT_NEGATIVE", "a channel whose keys have no data is skipped"},
     {"ACCESSOR_ANIMATION_INPUT_NON_INCREASING", "a channel whose keys have no data is skipped"},
     {"ACCESSOR_ANIMATION_SAMPLER_OUTPUT_NON_NORMALIZED_QUATERNION", "a channel whose keys have no data is skipped"},
@@ -181,7 +181,7 @@ std::set<std::string> errors_in(const std::filesystem::path& report) {
 }
 
 bool is_told(const std::string& code, const std::vector<std::string>& warnings) {
-  const auto [first, last] = kTold.equal_range(code);
+  const auto [first, last] = told.equal_range(code);
   return std::any_of(first, last, [&](const auto& entry) {
     return std::any_of(warnings.begin(), warnings.end(),
                        [&](const std::string& warning) { return warning.find(entry.second) != std::string::npos; });
@@ -190,7 +190,7 @@ bool is_told(const std::string& code, const std::vector<std::string>& warnings) 
 
 // One line per file: what the validator says, what the baker does.
 TEST(Corpus, JudgesTheValidatorsFilesByTheRule) {
-  const std::filesystem::path folder = kData / "conformance" / "gltf-validator-base";
+  const std::filesystem::path folder = data / "conformance" / "gltf-validator-base";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
   std::map<std::string, std::size_t> counts;
   for (const std::filesystem::path& path : gltfs_below(folder)) {
@@ -206,8 +206,7 @@ TEST(Corpus, JudgesTheValidatorsFilesByTheRule) {
     EXPECT_TRUE(!codes.empty() || verdict.error.empty()) << name << " is valid: " << verdict.error;
     if (verdict.error.empty()) {
       for (const std::string& code : codes) {
-        EXPECT_TRUE(kHarmless.contains(code) || is_told(code, verdict.warnings))
-            << name << " is baked without " << code;
+        EXPECT_TRUE(harmless.contains(code) || is_told(code, verdict.warnings)) << name << " is baked without " << code;
       }
       continue;
     }

@@ -14,7 +14,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kSide = 64;
+constexpr std::size_t side = 64;
 
 /// Where a chunk of a PNG begins: its length, then its type.
 std::size_t chunk_at(const Bytes& png, const std::string& type) {
@@ -43,11 +43,11 @@ EncodedImage with_chunk(EncodedImage png, const Bytes& added) {
 }
 
 EncodedImage noisy_png() {
-  return encoded("png", kSide, kSide, 3, noise(kSide * kSide * 3));
+  return encoded("png", side, side, 3, noise(side * side * 3));
 }
 
 EncodedImage noisy_jpeg() {
-  return encoded("jpg", kSide, kSide, 3, noise(kSide * kSide * 3));
+  return encoded("jpg", side, side, 3, noise(side * side * 3));
 }
 
 /// The rows from `first` to `end` of two images are equal.
@@ -79,7 +79,7 @@ TEST(Damaged, JpegThatIsCutKeepsWhatIsThere) {
   const DecodedTexels half = decode_image(cut);
   EXPECT_EQ(half.damage, "JPEG is cut short (" + std::to_string(cut.bytes.size()) + " bytes)");
   // A row less than the first blocks: colours reach over their edge.
-  EXPECT_TRUE(same_rows(half.texels, decode_image(whole).texels, 0, kSide / 4 - 1));
+  EXPECT_TRUE(same_rows(half.texels, decode_image(whole).texels, 0, side / 4 - 1));
   EncodedImage ended = cut;  // ends as a JPEG does, but has half of its blocks
   ended.bytes.insert(ended.bytes.end(), {0xFF, 0xD9});
   EXPECT_EQ(decode_image(ended).damage, "Corrupt JPEG data: premature end of data segment");
@@ -121,11 +121,11 @@ TEST(Damaged, PngThatIsCutRepeatsItsLastRow) {
   cut.bytes.resize(whole.bytes.size() / 2);
   const DecodedTexels half = decode_image(cut);
   EXPECT_EQ(half.damage, "PNG is cut short (" + std::to_string(cut.bytes.size()) + " bytes)");
-  EXPECT_TRUE(same_rows(half.texels, expected, 0, kSide / 3));
-  const std::size_t row = 4 * kSide;
+  EXPECT_TRUE(same_rows(half.texels, expected, 0, side / 3));
+  const std::size_t row = 4 * side;
   const auto last = half.texels.rgba.end() - static_cast<std::ptrdiff_t>(row);
   EXPECT_TRUE(std::equal(last, half.texels.rgba.end(), last - static_cast<std::ptrdiff_t>(row)));
-  EXPECT_FALSE(same_rows(half.texels, expected, kSide - 1, kSide));
+  EXPECT_FALSE(same_rows(half.texels, expected, side - 1, side));
   EncodedImage tail = whole;  // all rows, but neither their checksum nor an end
   tail.bytes.resize(tail.bytes.size() - 20);
   EXPECT_EQ(decode_image(tail).texels.rgba, expected.rgba);
@@ -135,10 +135,10 @@ TEST(Damaged, PngWithRubbishInItsDataKeepsTheRowsBefore) {
   const EncodedImage whole = noisy_png();
   EncodedImage broken = whole;
   const std::size_t idat = chunk_at(whole.bytes, "IDAT");
-  std::fill_n(broken.bytes.begin() + static_cast<std::ptrdiff_t>(idat + 8 + kSide * kSide * 2), 64, 0xFF);
+  std::fill_n(broken.bytes.begin() + static_cast<std::ptrdiff_t>(idat + 8 + side * side * 2), 64, 0xFF);
   const DecodedTexels decoded = decode_image(broken);
   EXPECT_NE(decoded.damage, "");
-  EXPECT_TRUE(same_rows(decoded.texels, decode_image(whole).texels, 0, kSide / 2));
+  EXPECT_TRUE(same_rows(decoded.texels, decode_image(whole).texels, 0, side / 2));
 }
 
 TEST(Damaged, FilesWithoutAPictureAreErrorsOfOneLine) {
@@ -276,14 +276,14 @@ TEST(Webp, IsDecodedToItsColours) {
 }
 
 /// 64x64, lossless: red 4x, green 4y, blue 40; alpha 64 in the left half, 255 in the right.
-const Bytes kLosslessWebp = {0x52, 0x49, 0x46, 0x46, 0x4A, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56, 0x50,
+const Bytes lossless_webp = {0x52, 0x49, 0x46, 0x46, 0x4A, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56, 0x50,
                              0x38, 0x4C, 0x3E, 0x00, 0x00, 0x00, 0x2F, 0x3F, 0xC0, 0x0F, 0x10, 0x09, 0x80, 0x20,
                              0x06, 0xFC, 0x4F, 0x1B, 0x88, 0xE8, 0x7F, 0xEA, 0x0B, 0x80, 0x20, 0xFC, 0xAF, 0x1B,
                              0x88, 0xE8, 0x7F, 0xEA, 0x50, 0xD0, 0xB6, 0x0D, 0xE3, 0x1D, 0xFE, 0xBC, 0xAB, 0x01,
                              0x18, 0x81, 0xA4, 0x2D, 0xDE, 0xF6, 0x0F, 0x8A, 0x40, 0x20, 0x49, 0x6D, 0xF2, 0xD5,
                              0x26, 0x00, 0x73, 0xD2, 0x6E, 0x27, 0xBD, 0x00, 0xAE, 0xFF, 0xDF, 0x00};
 /// The same with a lossy colour, and its alpha in a chunk of its own.
-const Bytes kLossyWebp = {
+const Bytes lossy_webp = {
     0x52, 0x49, 0x46, 0x46, 0x60, 0x01, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56, 0x50, 0x38, 0x58, 0x0A, 0x00, 0x00,
     0x00, 0x10, 0x00, 0x00, 0x00, 0x3F, 0x00, 0x00, 0x3F, 0x00, 0x00, 0x41, 0x4C, 0x50, 0x48, 0x15, 0x00, 0x00, 0x00,
     0x01, 0x0F, 0xF0, 0xA0, 0xFF, 0x88, 0x88, 0x20, 0x16, 0x4C, 0xE6, 0x2F, 0x1D, 0x43, 0x5F, 0x44, 0xFF, 0xA3, 0x0A,
@@ -305,17 +305,17 @@ const Bytes kLossyWebp = {
     0xEC, 0x8A, 0x09, 0xCF, 0xE3, 0x0A, 0xA7, 0x30, 0x78, 0x16, 0x32, 0xFA, 0x9E, 0x12, 0xCB, 0x50, 0x00, 0x00};
 
 TEST(Webp, KeepsColoursThatItsAlphaHides) {
-  for (const auto& [bytes, error] : {std::pair(kLosslessWebp, 0), std::pair(kLossyWebp, 6)}) {
+  for (const auto& [bytes, error] : {std::pair(lossless_webp, 0), std::pair(lossy_webp, 6)}) {
     const DecodedTexels decoded = decode_image({"", "test: image", bytes});
     EXPECT_EQ(decoded.damage, "");
-    ASSERT_EQ(decoded.texels.rgba.size(), 4 * kSide * kSide);
-    for (std::size_t y = 0; y < kSide; ++y) {
-      for (std::size_t x = 0; x < kSide; ++x) {
-        const std::uint8_t* texel = &decoded.texels.rgba[4 * (y * kSide + x)];
+    ASSERT_EQ(decoded.texels.rgba.size(), 4 * side * side);
+    for (std::size_t y = 0; y < side; ++y) {
+      for (std::size_t x = 0; x < side; ++x) {
+        const std::uint8_t* texel = &decoded.texels.rgba[4 * (y * side + x)];
         EXPECT_NEAR(texel[0], static_cast<double>(4 * x), error);
         EXPECT_NEAR(texel[1], static_cast<double>(4 * y), error);
         EXPECT_NEAR(texel[2], 40, error);
-        EXPECT_EQ(texel[3], x < kSide / 2 ? 64 : 255);
+        EXPECT_EQ(texel[3], x < side / 2 ? 64 : 255);
       }
     }
   }
@@ -323,7 +323,7 @@ TEST(Webp, KeepsColoursThatItsAlphaHides) {
 
 TEST(Webp, IsTakenWhereTheTextureHasNoOtherImage) {
   for (const bool required : {false, true}) {
-    GltfBuilder gltf = showing(kLosslessWebp, "image/webp");
+    GltfBuilder gltf = showing(lossless_webp, "image/webp");
     gltf.json["extensionsUsed"] = {"EXT_texture_webp"};
     if (required) gltf.json["extensionsRequired"] = {"EXT_texture_webp"};
     gltf.json["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
@@ -332,17 +332,17 @@ TEST(Webp, IsTakenWhereTheTextureHasNoOtherImage) {
     raw.images.textures = TextureMode::raw;
     const pack::Contents pack = gltf.bake(raw);
     ASSERT_EQ(pack.images.size(), 1u);
-    EXPECT_EQ(pack.images[0].width, kSide);
-    EXPECT_EQ(pack.image_data.at(4 * (kSide - 1)), std::byte{252});
+    EXPECT_EQ(pack.images[0].width, side);
+    EXPECT_EQ(pack.image_data.at(4 * (side - 1)), std::byte{252});
     EXPECT_EQ(pack.image_data.at(3), std::byte{64});
   }
 }
 
 TEST(Webp, ThatIsCutIsAnError) {
-  EncodedImage cut{"", "test: image", kLosslessWebp};
-  for (std::size_t size = 4; size < kLosslessWebp.size() - 1; ++size) {
-    cut.bytes.resize(kLosslessWebp.size());
-    std::copy(kLosslessWebp.begin(), kLosslessWebp.end(), cut.bytes.begin());
+  EncodedImage cut{"", "test: image", lossless_webp};
+  for (std::size_t size = 4; size < lossless_webp.size() - 1; ++size) {
+    cut.bytes.resize(lossless_webp.size());
+    std::copy(lossless_webp.begin(), lossless_webp.end(), cut.bytes.begin());
     cut.bytes.resize(size);
     EXPECT_EQ(decode_error(cut).rfind("test: image: ", 0), 0u) << size;
   }

@@ -13,7 +13,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-const std::filesystem::path kModels = std::filesystem::path(CHANDELIER_DATA_DIR) / "models" / "khronos";
+const std::filesystem::path models = std::filesystem::path(CHANDELIER_DATA_DIR) / "models" / "khronos";
 
 Scene import_file(const std::filesystem::path& path) {
   Scene scene;
@@ -41,7 +41,7 @@ float distance(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b)
 }
 
 void expect_equal_within(const char* plain, const char* compressed, float error_m) {
-  const Scene a = import_file(kModels / plain), b = import_file(kModels / compressed);
+  const Scene a = import_file(models / plain), b = import_file(models / compressed);
   const std::vector<glm::vec3> from = corners_of(a), to = corners_of(b);
   ASSERT_EQ(from.size(), to.size());
   EXPECT_LE(distance(from, to), error_m);
@@ -54,7 +54,7 @@ void expect_equal_within(const char* plain, const char* compressed, float error_
 }
 
 TEST(Draco, EqualsThePlainModelWithinItsQuantization) {
-  if (!std::filesystem::exists(kModels)) GTEST_SKIP() << "no " << kModels;
+  if (!std::filesystem::exists(models)) GTEST_SKIP() << "no " << models;
   expect_equal_within("Box/glTF-Binary/Box.glb", "Box/glTF-Draco/Box.gltf", 1e-3f);
   expect_equal_within("RiggedFigure/glTF/RiggedFigure.gltf", "RiggedFigure/glTF-Draco/RiggedFigure.gltf", 2e-3f);
 }
@@ -67,8 +67,8 @@ std::string read_text(const std::filesystem::path& path) {
 /// The compressed box in a folder of its own, whose stream a test may change.
 struct CompressedBox {
   std::filesystem::path folder = scratch_folder() / "draco";
-  Json json = Json::parse(read_text(kModels / "Box/glTF-Draco/Box.gltf"));
-  std::string stream = read_text(kModels / "Box/glTF-Draco" / json["buffers"][0]["uri"].get<std::string>());
+  Json json = Json::parse(read_text(models / "Box/glTF-Draco/Box.gltf"));
+  std::string stream = read_text(models / "Box/glTF-Draco" / json["buffers"][0]["uri"].get<std::string>());
 
   std::string error() const {
     std::filesystem::create_directories(folder);
@@ -80,7 +80,7 @@ struct CompressedBox {
 };
 
 TEST(Draco, IsRefusedWhereItsNumbersDoNotFit) {
-  if (!std::filesystem::exists(kModels)) GTEST_SKIP() << "no " << kModels;
+  if (!std::filesystem::exists(models)) GTEST_SKIP() << "no " << models;
   CompressedBox box;
   EXPECT_EQ(box.error(), "");
   const Json good = box.json;
@@ -101,7 +101,7 @@ TEST(Draco, IsRefusedWhereItsNumbersDoNotFit) {
 }
 
 TEST(Draco, SurvivesEveryChangedByteAndEveryTruncation) {
-  if (!std::filesystem::exists(kModels)) GTEST_SKIP() << "no " << kModels;
+  if (!std::filesystem::exists(models)) GTEST_SKIP() << "no " << models;
   const CompressedBox good;
   std::size_t refused = 0;
   for (std::size_t i = 0; i < good.stream.size(); ++i) {

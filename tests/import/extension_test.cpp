@@ -91,10 +91,11 @@ GltfBuilder compressed_grid(bool as_sequence) {
       gltf, as_sequence ? encode_sequence(grid.indices, vertices) : encode_triangles(grid.indices, vertices),
       as_sequence ? "INDICES" : "TRIANGLES", grid.indices.size(), 4);
   const int position = gltf.append(
-      "accessors", {{"bufferView", positions}, {"componentType", kFloat}, {"type", "VEC3"}, {"count", vertices}});
-  const int index = gltf.append(
-      "accessors",
-      {{"bufferView", indices}, {"componentType", kUnsignedInt}, {"type", "SCALAR"}, {"count", grid.indices.size()}});
+      "accessors", {{"bufferView", positions}, {"componentType", float_type}, {"type", "VEC3"}, {"count", vertices}});
+  const int index = gltf.append("accessors", {{"bufferView", indices},
+                                              {"componentType", unsigned_int_type},
+                                              {"type", "SCALAR"},
+                                              {"count", grid.indices.size()}});
   gltf.add_mesh({{"attributes", {{"POSITION", position}}}, {"indices", index}});
   gltf.add_node({{"mesh", 0}});
   return gltf;
@@ -130,9 +131,10 @@ TEST(Meshopt, AppliesTheOctahedralAndTheExponentialFilter) {
   const int n = add_compressed(gltf, encode_vertices(octahedral.data(), 3, 4), "ATTRIBUTES", 3, 4, "OCTAHEDRAL");
   const int e = add_compressed(gltf, encode_vertices(exponential.data(), 3, 8), "ATTRIBUTES", 3, 8, "EXPONENTIAL");
   primitive(gltf)["attributes"]["NORMAL"] = gltf.append(
-      "accessors", {{"bufferView", n}, {"componentType", kByte}, {"type", "VEC3"}, {"count", 3}, {"normalized", true}});
+      "accessors",
+      {{"bufferView", n}, {"componentType", byte_type}, {"type", "VEC3"}, {"count", 3}, {"normalized", true}});
   primitive(gltf)["attributes"]["TEXCOORD_0"] =
-      gltf.append("accessors", {{"bufferView", e}, {"componentType", kFloat}, {"type", "VEC2"}, {"count", 3}});
+      gltf.append("accessors", {{"bufferView", e}, {"componentType", float_type}, {"type", "VEC2"}, {"count", 3}});
   const Scene scene = gltf.import();
   const Primitive& read = scene.meshes.at(0).primitives.at(0);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -153,7 +155,7 @@ TEST(Meshopt, AppliesTheQuaternionFilter) {
   const int view = add_compressed(gltf, encode_vertices(filtered.data(), 2, 8), "ATTRIBUTES", 2, 8, "QUATERNION");
   const int accessor = gltf.append(
       "accessors",
-      {{"bufferView", view}, {"componentType", kShort}, {"type", "VEC4"}, {"count", 2}, {"normalized", true}});
+      {{"bufferView", view}, {"componentType", short_type}, {"type", "VEC4"}, {"count", 2}, {"normalized", true}});
   gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"ROTATION", accessor}};
   const Scene scene = gltf.import();
   ASSERT_EQ(scene.instances.size(), 2u);
@@ -334,7 +336,7 @@ TEST(TextureSource, FallsBackToThePlainImage) {
         with_base_color({{"index", 0}}, {{"source", 0}, {"extensions", {{extension, {{"source", 1}}}}}}).import();
     ASSERT_EQ(scene.images.size(), 1u);
     EXPECT_EQ(scene.images[0].bytes[1], 'P');
-    EXPECT_NE(scene.materials.at(0).base_color.texture, kNone);
+    EXPECT_NE(scene.materials.at(0).base_color.texture, no_index);
   }
 }
 
@@ -342,7 +344,7 @@ TEST(TextureSource, IsLeftOutByNameWhereThereIsNoImageThatIsDecoded) {
   for (const Json& texture : {Json{{"extensions", {{"KHR_texture_basisu", {{"source", 1}}}}}}, Json{{"source", 1}}}) {
     Warnings warnings;
     const Scene scene = with_base_color({{"index", 0}}, texture).import(&warnings);
-    EXPECT_EQ(scene.materials.at(0).base_color.texture, kNone);
+    EXPECT_EQ(scene.materials.at(0).base_color.texture, no_index);
     ASSERT_GE(warnings.lines().size(), 1u);
     EXPECT_NE(warnings.lines().back().find(
                   "has no PNG, JPEG or WebP image but only that of KHR_texture_basisu and is left out"),
@@ -359,7 +361,7 @@ TEST(TextureSource, OfEmissionThatIsLeftOutLeavesNoGlow) {
     const bool kept = info == Json{{"index", 1}};
     const Scene scene = gltf.import();
     EXPECT_EQ(scene.materials.at(0).emissive, glm::vec3(kept ? 1.0f : 0.0f)) << info;
-    EXPECT_EQ(scene.materials.at(0).emissive_map.texture == kNone, !kept) << info;
+    EXPECT_EQ(scene.materials.at(0).emissive_map.texture == no_index, !kept) << info;
   }
 }
 

@@ -11,30 +11,30 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-constexpr int kPoints = 0, kLines = 1, kTriangles = 4, kStrip = 5, kFan = 6;
+constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4, strip_mode = 5, fan_mode = 6;
 
 TEST(TriangleList, FollowsTheFormulasOfTheModes) {
-  EXPECT_EQ(triangle_list(kTriangles, {0, 1, 2, 3, 4, 5, 6}), (Indices{0, 1, 2, 3, 4, 5}));
-  EXPECT_EQ(triangle_list(kStrip, {10, 11, 12, 13, 14}), (Indices{10, 11, 12, 11, 13, 12, 12, 13, 14}));
-  EXPECT_EQ(triangle_list(kFan, {10, 11, 12, 13}), (Indices{11, 12, 10, 12, 13, 10}));
-  EXPECT_EQ(triangle_list(kStrip, {0, 1}), Indices{});
+  EXPECT_EQ(triangle_list(triangles_mode, {0, 1, 2, 3, 4, 5, 6}), (Indices{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(triangle_list(strip_mode, {10, 11, 12, 13, 14}), (Indices{10, 11, 12, 11, 13, 12, 12, 13, 14}));
+  EXPECT_EQ(triangle_list(fan_mode, {10, 11, 12, 13}), (Indices{11, 12, 10, 12, 13, 10}));
+  EXPECT_EQ(triangle_list(strip_mode, {0, 1}), Indices{});
 }
 
 /// Corners of the unit square in strip order: the two triangles of a strip both face +z.
-const std::vector<float> kStripSquare = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+const std::vector<float> strip_square = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 
 GltfBuilder primitive_of_mode(int mode) {
   GltfBuilder gltf;
-  gltf.add_mesh({{"attributes", {{"POSITION", gltf.add_positions(kStripSquare)}}}, {"mode", mode}});
+  gltf.add_mesh({{"attributes", {{"POSITION", gltf.add_positions(strip_square)}}}, {"mode", mode}});
   gltf.add_node({{"mesh", 0}});
   return gltf;
 }
 
 TEST(Primitive, MakesStripsAndFansWithoutIndicesFaceTheRightWay) {
-  for (const int mode : {kStrip, kFan}) {
+  for (const int mode : {strip_mode, fan_mode}) {
     GltfBuilder gltf = primitive_of_mode(mode);
     // A fan goes around: its square needs the last two corners swapped.
-    if (mode == kFan) {
+    if (mode == fan_mode) {
       gltf.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
           gltf.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
     }
@@ -49,7 +49,7 @@ TEST(Primitive, MakesStripsAndFansWithoutIndicesFaceTheRightWay) {
 }
 
 TEST(Primitive, SkipsPointsAndLinesWithAWarning) {
-  for (const int mode : {kPoints, kLines, 2, 3}) {
+  for (const int mode : {points_mode, lines_mode, 2, 3}) {
     Warnings warnings;
     const Scene scene = primitive_of_mode(mode).import(&warnings);
     EXPECT_TRUE(scene.meshes.at(0).primitives.empty());
@@ -79,7 +79,8 @@ TEST(Primitive, ReadsBothTextureCoordinateSetsOfAnyType) {
   GltfBuilder gltf = one_triangle();
   Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["TEXCOORD_0"] = gltf.add_floats({0, 1, 2, 3, 4, 5}, "VEC2", 2);
-  attributes["TEXCOORD_1"] = gltf.add_accessor<std::uint8_t>({0, 255, 51, 0, 255, 255}, kUnsignedByte, "VEC2", 3, true);
+  attributes["TEXCOORD_1"] =
+      gltf.add_accessor<std::uint8_t>({0, 255, 51, 0, 255, 255}, unsigned_byte_type, "VEC2", 3, true);
   const Primitive primitive = gltf.import().meshes.at(0).primitives.at(0);
   EXPECT_EQ(primitive.vertices[1].uv0, glm::vec2(2, 3));
   EXPECT_EQ(primitive.vertices[1].uv1, glm::vec2(0.2f, 0));
@@ -95,11 +96,11 @@ TEST(Primitive, PacksVertexColoursOfEachType) {
   // 1.0 -> 255, 0.5 -> 127.5 rounds to 128, 0.2 -> 51; clamped above 1; alpha 255 where there is none.
   EXPECT_EQ(color_of(gltf, gltf.add_floats({1, 0.5f, 0.2f, 0, 0, 0, 0, 0, 0}, "VEC3", 3)), 0xFF3380FFu);
   EXPECT_EQ(color_of(gltf, gltf.add_floats({2, 0.5f, 0.2f, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 4)), 0x003380FFu);
-  EXPECT_EQ(color_of(gltf, gltf.add_accessor<std::uint8_t>({1, 2, 3, 4, 0, 0, 0, 0, 0, 0, 0, 0}, kUnsignedByte, "VEC4",
-                                                           3, true)),
+  EXPECT_EQ(color_of(gltf, gltf.add_accessor<std::uint8_t>({1, 2, 3, 4, 0, 0, 0, 0, 0, 0, 0, 0}, unsigned_byte_type,
+                                                           "VEC4", 3, true)),
             0x04030201u);
-  EXPECT_EQ(color_of(gltf, gltf.add_accessor<std::uint16_t>({65535, 257, 0, 0, 0, 0, 0, 0, 0}, kUnsignedShort, "VEC3",
-                                                            3, true)),
+  EXPECT_EQ(color_of(gltf, gltf.add_accessor<std::uint16_t>({65535, 257, 0, 0, 0, 0, 0, 0, 0}, unsigned_short_type,
+                                                            "VEC3", 3, true)),
             0xFF0001FFu);
   EXPECT_EQ(one_triangle().import().meshes.at(0).primitives.at(0).vertices.at(0).color, 0xFFFFFFFFu);
 }

@@ -18,8 +18,8 @@ namespace chandelier::baker::test {
 using Json = nlohmann::json;
 
 // glTF's numbers.
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
-              kFloat = 5126;
+constexpr int byte_type = 5120, unsigned_byte_type = 5121, short_type = 5122, unsigned_short_type = 5123,
+              unsigned_int_type = 5125, float_type = 5126;
 
 struct GltfBuilder {
   Json json = {{"asset", {{"version", "2.0"}}}};
@@ -47,12 +47,12 @@ struct GltfBuilder {
     return append("accessors", accessor);
   }
   int add_floats(const std::vector<float>& data, const char* type, std::size_t components) {
-    return add_accessor(data, kFloat, type, data.size() / components);
+    return add_accessor(data, float_type, type, data.size() / components);
   }
   /// With the bounds that glTF asks for, where they are numbers.
   int add_positions(const std::vector<float>& xyz);
   int add_indices(const std::vector<std::uint16_t>& indices) {
-    return add_accessor(indices, kUnsignedShort, "SCALAR", indices.size());
+    return add_accessor(indices, unsigned_short_type, "SCALAR", indices.size());
   }
 
   /// A mesh of one primitive; returns the mesh's number.

@@ -17,7 +17,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-constexpr float kWatt_cd = 54.3514131f;  // 683 / 4π: what one watt is in Blender's standard export
+constexpr float watt_cd = 54.3514131f;  // 683 / 4π: what one watt is in Blender's standard export
 
 /// A pack of boxes, one batch each, and a scene of lights.
 struct Stage {
@@ -115,7 +115,7 @@ TEST(LightAudit, LeavesALitRoomInPeace) {
 }
 
 TEST(LightAudit, NamesLightsThatAllHaveAnExportersDefault) {
-  for (const float intensity : {1.0f, 10 * kWatt_cd, 1000 * kWatt_cd, 10 / 12.5663706f, 1000.0f}) {
+  for (const float intensity : {1.0f, 10 * watt_cd, 1000 * watt_cd, 10 / 12.5663706f, 1000.0f}) {
     Stage stage;
     for (const float x : {-300.0f, 0.0f, 300.0f}) stage.add_light({x, 30, 0}, intensity);
     expect_one(stage, "all 3 are white with " + to_text(intensity) + " cd");
@@ -146,13 +146,13 @@ TEST(LightAudit, LeavesDefaultsInPeaceWhereAnythingWasSet) {
 
 TEST(LightAudit, NamesMixedUnitsByTheirPower) {
   const std::pair<float, const char*> mixups[] = {
-      {683 * kWatt_cd, "683 times too bright"},        {683, "12.6 times too bright"},
-      {kWatt_cd / 12.5663706f, "12.6 times too dark"}, {1, "54 times too dark"},
+      {683 * watt_cd, "683 times too bright"},        {683, "12.6 times too bright"},
+      {watt_cd / 12.5663706f, "12.6 times too dark"}, {1, "54 times too dark"},
       {1 / 12.5663706f, "683 times too dark"},
   };
   for (const auto& [candela_per_watt, words] : mixups) {
     Stage stage;
-    stage.add_light({0, 3, 0}, 60 * kWatt_cd).power_w = 60;
+    stage.add_light({0, 3, 0}, 60 * watt_cd).power_w = 60;
     stage.add_light({1, 3, 0}, 40 * candela_per_watt).power_w = 40;
     stage.add_light({2, 3, 0}, 800).power_w = 60;  // a lamp with an efficacy of its own
     expect_one(stage, words);
@@ -179,7 +179,7 @@ TEST(LightAudit, LeavesFloodlightsInPeace) {
 TEST(LightAudit, NamesLightsBrighterThanTheSun) {
   Stage stage;
   stage.add_room();
-  for (const float x : {-3.0f, 0.0f, 3.0f}) stage.add_light({x, 3, 0}, 683 * 100 * kWatt_cd + x);
+  for (const float x : {-3.0f, 0.0f, 3.0f}) stage.add_light({x, 3, 0}, 683 * 100 * watt_cd + x);
   expect_one(stage, "brighter than direct sunlight");
 }
 

@@ -18,7 +18,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double pi = 3.14159265358979323846;
 
 double length2(const glm::dvec3& v) {
   return glm::dot(v, v);
@@ -41,11 +41,11 @@ std::vector<glm::dvec3> samples_of(const pack::Light& light) {
       glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 other = glm::cross(axis, side);
   std::vector<glm::dvec3> out = {glm::dvec3(light.position_ws)};
-  constexpr int kRings = 200, kSteps = 128;
-  for (int ring = 0; ring <= kRings; ++ring) {
-    const double angle = std::acos(double{light.outer_cone_cos}) * ring / kRings;
-    for (int step = 0; step < kSteps; ++step) {
-      const double turn = 2 * kPi * step / kSteps;
+  constexpr int rings = 200, step_count = 128;
+  for (int ring = 0; ring <= rings; ++ring) {
+    const double angle = std::acos(double{light.outer_cone_cos}) * ring / rings;
+    for (int step = 0; step < step_count; ++step) {
+      const double turn = 2 * pi * step / step_count;
       const glm::dvec3 way =
           axis * std::cos(angle) + (side * std::cos(turn) + other * std::sin(turn)) * std::sin(angle);
       out.push_back(glm::dvec3(light.position_ws) + way * double{light.range_m});
@@ -57,7 +57,7 @@ std::vector<glm::dvec3> samples_of(const pack::Light& light) {
 TEST(LightBounds, AreTheSmallestSphereAroundASpotLightsSector) {
   for (const double degrees : {0.5, 10.0, 30.0, 44.0, 45.0, 46.0, 60.0, 80.0, 90.0, 120.0, 180.0}) {
     SCOPED_TRACE(degrees);
-    const pack::Light light = spot_light(static_cast<float>(degrees * kPi / 180), 5, {1, -2, 0.5});
+    const pack::Light light = spot_light(static_cast<float>(degrees * pi / 180), 5, {1, -2, 0.5});
     const Sphere bounds = light_bounds(light);
     const std::vector<glm::dvec3> points = samples_of(light);
     double farthest = 0;
@@ -148,15 +148,15 @@ TEST(LightBvh, FindsExactlyTheLightsThatReachAPoint) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> place(-110, 110);
     std::size_t visited = 0, found = 0;
-    constexpr int kPoints = 2000;
-    for (int i = 0; i < kPoints; ++i) {
+    constexpr int point_count = 2000;
+    for (int i = 0; i < point_count; ++i) {
       const glm::vec3 point = {place(random), 0.1f * place(random), place(random)};
       const auto expected = lights_by_looking_at_all(lights, point);
       ASSERT_EQ(lights_at(nodes, point, visited), expected);
       found += expected.size();
     }
-    RecordProperty("visited_per_point_" + std::to_string(count), static_cast<int>(visited / kPoints));
-    EXPECT_TRUE(count < 471 || visited < count * kPoints / 4) << visited;  // of 2 · count nodes
+    RecordProperty("visited_per_point_" + std::to_string(count), static_cast<int>(visited / point_count));
+    EXPECT_TRUE(count < 471 || visited < count * point_count / 4) << visited;  // of 2 · count nodes
     EXPECT_TRUE(count < 471 || found > 0u);
   }
 }

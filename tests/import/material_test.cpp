@@ -11,7 +11,7 @@ namespace chandelier::baker::test {
 namespace {
 
 /// A 1x1 PNG, red with alpha 128.
-const std::vector<std::uint8_t> kPng = {
+const std::vector<std::uint8_t> png = {
     0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
     0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0x1F, 0x15, 0xC4, 0x89, 0x00, 0x00, 0x00,
     0x0D, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9C, 0x63, 0xF8, 0xCF, 0xC0, 0xD0, 0x00, 0x00, 0x04, 0x81, 0x01, 0x80,
@@ -26,7 +26,7 @@ GltfBuilder with_material(const Json& material) {
 
 GltfBuilder with_texture(const Json& material) {
   GltfBuilder gltf = with_material(material);
-  gltf.json["images"] = {{{"uri", "data:image/png;base64," + base64(kPng)}, {"name", "red"}}};
+  gltf.json["images"] = {{{"uri", "data:image/png;base64," + base64(png)}, {"name", "red"}}};
   gltf.json["textures"] = {{{"source", 0}}};
   return gltf;
 }
@@ -132,7 +132,7 @@ TEST(Texture, StoresIdenticalFilesOnceAndDecodesThemOnce) {
   GltfBuilder gltf = with_texture({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
                                    {"emissiveTexture", {{"index", 1}}},
                                    {"occlusionTexture", {{"index", 1}}}});
-  gltf.json["images"].push_back({{"uri", "data:image/png;base64," + base64(kPng)}, {"name", "red again"}});
+  gltf.json["images"].push_back({{"uri", "data:image/png;base64," + base64(png)}, {"name", "red again"}});
   gltf.json["textures"].push_back({{"source", 1}});
   Report report;
   Warnings warnings;
@@ -162,7 +162,7 @@ Scene scene_with_image(const std::vector<std::uint8_t>& bytes) {
 }
 
 TEST(Texture, KeepsAlphaApartWhereOnlyOneMaterialTestsIt) {
-  Scene scene = scene_with_image(kPng);
+  Scene scene = scene_with_image(png);
   scene.materials.push_back(scene.materials[0]);
   scene.materials[1].masked = true;
   const pack::Contents pack = bake_scene(std::move(scene), {});
@@ -170,7 +170,7 @@ TEST(Texture, KeepsAlphaApartWhereOnlyOneMaterialTestsIt) {
 }
 
 TEST(Texture, TransformsAreKeptAndTellTexturesApart) {
-  Scene scene = scene_with_image(kPng);
+  Scene scene = scene_with_image(png);
   Material& material = scene.materials[0];
   material.base_color.uv_transform = {glm::vec3(0, 2, 0.5f), glm::vec3(-1, 0, 0.25f)};
   material.emissive_map.texture = 0;
@@ -197,7 +197,7 @@ TEST(Texture, CanBeLeftOut) {
 }
 
 TEST(Material, KeepsThatItIsUnlit) {
-  Scene scene = scene_with_image(kPng);
+  Scene scene = scene_with_image(png);
   scene.materials[0].unlit = true;
   EXPECT_EQ(bake_scene(std::move(scene), {}).materials.at(0).unlit, 1u);
 }
@@ -216,12 +216,12 @@ TEST(Image, IsReadFromADataUriABufferViewOrAFile) {
   expect_red(with_texture(material));
 
   GltfBuilder view = with_texture(material);
-  view.json["images"][0] = {{"bufferView", view.add_view(kPng)}, {"mimeType", "image/png"}};
+  view.json["images"][0] = {{"bufferView", view.add_view(png)}, {"mimeType", "image/png"}};
   expect_red(view);
 
   std::filesystem::create_directories(scratch_folder() / "a b");
-  write_bytes(scratch_folder() / "a b" / "rot ❤.png", {kPng.begin(), kPng.end()});
-  write_bytes(scratch_folder() / "50%25.png", {kPng.begin(), kPng.end()});
+  write_bytes(scratch_folder() / "a b" / "rot ❤.png", {png.begin(), png.end()});
+  write_bytes(scratch_folder() / "50%25.png", {png.begin(), png.end()});
   GltfBuilder file = with_texture(material);
   for (const char* uri : {"a%20b/rot%20%E2%9D%A4.png", "a b/rot ❤.png", "50%25.png"}) {
     file.json["images"][0] = {{"uri", uri}};

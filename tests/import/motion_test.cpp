@@ -88,7 +88,7 @@ TEST(Animation, MovesLightsAndCamerasToo) {
   ASSERT_EQ(scene.lights.size(), 2u);
   EXPECT_EQ(scene.lights[0].node, 1u);
   EXPECT_TRUE(scene.lights[0].dynamic);
-  EXPECT_EQ(scene.lights[1].node, kNone);
+  EXPECT_EQ(scene.lights[1].node, no_index);
   EXPECT_FALSE(scene.lights[1].dynamic);
   EXPECT_EQ(scene.cameras.at(0).node, 1u);
 }
@@ -131,7 +131,7 @@ GltfBuilder skinned_triangle() {
       {{"name", "leg"}, {"joints", {1, 2}}, {"inverseBindMatrices", gltf.add_floats(matrices, "MAT4", 16)}}};
   Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["JOINTS_0"] =
-      gltf.add_accessor<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 9, 0, 0, 0, 0}, kUnsignedByte, "VEC4", 3);
+      gltf.add_accessor<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 9, 0, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
   attributes["WEIGHTS_0"] = gltf.add_floats({0.25f, 0.75f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
   const int times = gltf.add_floats({0.5f, 2}, "SCALAR", 1);
   gltf.json["accessors"][times]["min"] = {0.5};
@@ -255,7 +255,7 @@ TEST(Skin, KeepsTrianglesThatAreTogetherOnlyInTheBindPose) {
   primitive["attributes"]["POSITION"] = gltf.add_positions(twins);
   std::vector<std::uint8_t> joints(24, 0);
   for (std::size_t i = 12; i < 24; i += 4) joints[i] = 1;
-  primitive["attributes"]["JOINTS_0"] = gltf.add_accessor<std::uint8_t>(joints, kUnsignedByte, "VEC4", 6);
+  primitive["attributes"]["JOINTS_0"] = gltf.add_accessor<std::uint8_t>(joints, unsigned_byte_type, "VEC4", 6);
   std::vector<float> weights(24, 0);
   for (std::size_t i = 0; i < 24; i += 4) weights[i] = 1;
   primitive["attributes"]["WEIGHTS_0"] = gltf.add_floats(weights, "VEC4", 4);
@@ -293,7 +293,7 @@ TEST(Skin, IsIgnoredWithAWarningWhereVerticesHaveNoJoints) {
   gltf.json["meshes"][0]["primitives"][0]["attributes"].erase("JOINTS_0");
   gltf.json["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
   Warnings warnings;
-  EXPECT_EQ(gltf.import(&warnings).instances.at(0).skin, kNone);
+  EXPECT_EQ(gltf.import(&warnings).instances.at(0).skin, no_index);
   ASSERT_EQ(warnings.lines().size(), 1u);
   EXPECT_NE(warnings.lines()[0].find("a skin is ignored: its mesh has vertices without joints"), std::string::npos);
 }

@@ -17,13 +17,13 @@ void expect_near(const glm::dvec3& a, const glm::dvec3& b) {
   EXPECT_LT(glm::length(a - b), 1e-6) << a.x << " " << a.y << " " << a.z;
 }
 
-constexpr double kHalf = 0.70710678118654752;  // sin and cos of 45 degrees: a quarter turn's quaternion
+constexpr double sin_45 = 0.70710678118654752;  // sin and cos of 45 degrees: a quarter turn's quaternion
 
 TEST(Node, AppliesScaleThenRotationThenTranslationUnderItsParent) {
   GltfBuilder gltf = one_triangle();
   gltf.json["nodes"] = {
-      {{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, kHalf, kHalf}}},
-      {{"mesh", 0}, {"translation", {0, 5, 0}}, {"rotation", {0, 0, kHalf, kHalf}}, {"scale", {2, 3, 4}}}};
+      {{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, sin_45, sin_45}}},
+      {{"mesh", 0}, {"translation", {0, 5, 0}}, {"rotation", {0, 0, sin_45, sin_45}}, {"scale", {2, 3, 4}}}};
   const Scene scene = gltf.import();
   ASSERT_EQ(scene.instances.size(), 1u);
   // (1,1,1): scaled (2,3,4), turned a quarter about z (-3,2,4), moved (-3,7,4); the parent turns it to (-7,-3,4) and
@@ -168,7 +168,7 @@ TEST(Node, ThatIsHiddenHasNoPartInWhatMoves) {
        {"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "translation"}}}}}}}};
   const Scene scene = gltf.import();
   ASSERT_EQ(scene.instances.size(), 1u);
-  EXPECT_EQ(scene.instances[0].node, kNone);
+  EXPECT_EQ(scene.instances[0].node, no_index);
   ASSERT_EQ(scene.nodes.size(), 1u);
   EXPECT_EQ(scene.nodes[0].name, "arm");
 }
@@ -193,11 +193,11 @@ TEST(Node, WhoseVisibilityIsAnimatedStaysAsItIsWithALine) {
 
 TEST(Node, WalksTreesOfAnyDepth) {
   GltfBuilder gltf = one_triangle();
-  constexpr int kDepth = 20000;
+  constexpr int depth = 20000;
   gltf.json["nodes"] = Json::array();
-  for (int i = 0; i < kDepth; ++i) gltf.add_node({{"children", {i + 1}}, {"translation", {1, 0, 0}}});
+  for (int i = 0; i < depth; ++i) gltf.add_node({{"children", {i + 1}}, {"translation", {1, 0, 0}}});
   gltf.add_node({{"mesh", 0}});
-  expect_near(moved(gltf.import().instances.at(0), {0, 0, 0}), {kDepth, 0, 0});
+  expect_near(moved(gltf.import().instances.at(0), {0, 0, 0}), {depth, 0, 0});
 }
 
 TEST(Node, WarnsOfASkinWithoutJointsAndIsSilentOfMorphTargetsWithoutWeights) {
@@ -218,7 +218,8 @@ TEST(Camera, LooksAlongItsNodesNegativeZ) {
        {"perspective", {{"yfov", 0.5}, {"znear", 0.01}, {"aspectRatio", 2}}}},
       {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 9}, {"znear", 1}}}}};
   // A quarter turn about y takes -z to -x.
-  gltf.add_node({{"camera", 0}, {"translation", {1, 2, 3}}, {"rotation", {0, kHalf, 0, kHalf}}, {"scale", {2, 2, 2}}});
+  gltf.add_node(
+      {{"camera", 0}, {"translation", {1, 2, 3}}, {"rotation", {0, sin_45, 0, sin_45}}, {"scale", {2, 2, 2}}});
   gltf.add_node({{"camera", 1}});
   Warnings warnings;
   const Scene scene = gltf.import(&warnings);

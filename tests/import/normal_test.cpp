@@ -60,21 +60,21 @@ TEST(Normals, AreSmoothAcrossAnEdgeUpToTheAngle) {
 }
 
 TEST(Normals, OfAFineSphereAreItsRadii) {
-  constexpr int kRings = 24, kSides = 48;
+  constexpr int rings = 24, sides = 48;
   std::vector<glm::vec3> places;
-  for (int r = 0; r <= kRings; ++r) {
-    for (int s = 0; s < kSides; ++s) {
-      const double theta = M_PI * r / kRings, phi = 2 * M_PI * s / kSides;
-      const double radius = r % kRings == 0 ? 0 : std::sin(theta);  // the poles are one place each
+  for (int r = 0; r <= rings; ++r) {
+    for (int s = 0; s < sides; ++s) {
+      const double theta = M_PI * r / rings, phi = 2 * M_PI * s / sides;
+      const double radius = r % rings == 0 ? 0 : std::sin(theta);  // the poles are one place each
       places.push_back(glm::dvec3(radius * std::cos(phi), std::cos(theta), radius * std::sin(phi)));
     }
   }
   std::vector<std::uint32_t> corners;
-  for (std::uint32_t r = 0; r < kRings; ++r) {
-    for (std::uint32_t s = 0; s < kSides; ++s) {
-      const std::uint32_t a = r * kSides + s, b = r * kSides + (s + 1) % kSides, c = a + kSides, d = b + kSides;
+  for (std::uint32_t r = 0; r < rings; ++r) {
+    for (std::uint32_t s = 0; s < sides; ++s) {
+      const std::uint32_t a = r * sides + s, b = r * sides + (s + 1) % sides, c = a + sides, d = b + sides;
       if (r > 0) corners.insert(corners.end(), {a, b, c});
-      if (r + 1 < kRings) corners.insert(corners.end(), {b, d, c});
+      if (r + 1 < rings) corners.insert(corners.end(), {b, d, c});
     }
   }
   Primitive primitive = soup(places, corners);
@@ -89,14 +89,14 @@ TEST(Normals, OfAFineSphereAreItsRadii) {
 
 TEST(Normals, OfAFanSmoothInOneSector) {
   // A cone of many sides: quadratic work at its tip would not end.
-  constexpr int kSides = 100000;
+  constexpr int sides = 100000;
   std::vector<glm::vec3> places = {{0, 0.1f, 0}};
   std::vector<std::uint32_t> corners;
-  for (int i = 0; i < kSides; ++i) {
-    const double angle = 2 * M_PI * i / kSides;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * M_PI * i / sides;
     places.push_back({std::cos(angle), 0, -std::sin(angle)});
     const auto a = static_cast<std::uint32_t>(i);
-    corners.insert(corners.end(), {0, a + 1, (a + 1) % kSides + 1});
+    corners.insert(corners.end(), {0, a + 1, (a + 1) % sides + 1});
   }
   Primitive primitive = soup(places, corners);
   make_normals(primitive, 0.5f);

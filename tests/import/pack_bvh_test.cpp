@@ -87,7 +87,7 @@ void expect_hierarchies(const pack::Contents& pack, int queries) {
                            static_cast<std::uint32_t>(static_batches), batch_of, random_queries(world, queries, 1)));
 
   const auto instance_of = [&](std::uint32_t i) {
-    BvhItem out = {glm::vec3(kMost), pack.instance_bvh_items[i].instance, glm::vec3(-kMost), 0};
+    BvhItem out = {glm::vec3(largest_float), pack.instance_bvh_items[i].instance, glm::vec3(-largest_float), 0};
     for (const auto& draw : pack.batch_instances) {
       if (draw.instance != out.number) continue;
       out.low = glm::min(out.low, draw.bounds_min_ws);
@@ -182,7 +182,7 @@ Scene geometry_of(const std::filesystem::path& path) {
   for (Material& material : scene.materials) {
     for (TextureUse* use : {&material.base_color, &material.metallic_roughness, &material.normal, &material.occlusion,
                             &material.emissive_map}) {
-      use->texture = kNone;
+      use->texture = no_index;
     }
   }
   return scene;

@@ -11,7 +11,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-constexpr double kHalf = 0.70710678118654752;  // of a quarter turn's quaternion
+constexpr double sin_45 = 0.70710678118654752;  // of a quarter turn's quaternion
 
 Json& primitive(GltfBuilder& gltf) {
   return gltf.json["meshes"][0]["primitives"][0];
@@ -84,14 +84,14 @@ TEST(Morph, ReadsSparseTargets) {
   GltfBuilder gltf = morphed_triangle();
   const int indices = gltf.add_view<std::uint16_t>({1}), values = gltf.add_view<float>({0, 3, 0});
   const int sparse =
-      gltf.append("accessors", {{"componentType", kFloat},
+      gltf.append("accessors", {{"componentType", float_type},
                                 {"type", "VEC3"},
                                 {"count", 3},
                                 {"min", {0, 0, 0}},
                                 {"max", {0, 3, 0}},
                                 {"sparse",
                                  {{"count", 1},
-                                  {"indices", {{"bufferView", indices}, {"componentType", kUnsignedShort}}},
+                                  {"indices", {{"bufferView", indices}, {"componentType", unsigned_short_type}}},
                                   {"values", {{"bufferView", values}}}}}});
   primitive(gltf)["targets"] = {{{"POSITION", sparse}}};
   gltf.json["meshes"][0]["weights"] = {0.5};
@@ -103,7 +103,7 @@ TEST(Morph, ReadsQuantizedTargets) {
   gltf.json["extensionsUsed"] = gltf.json["extensionsRequired"] = {"KHR_mesh_quantization"};
   const int view = gltf.add_view<std::int16_t>({0, 0, 0, 0, 32767, 0, -16384, 0, 0, 0, 0, 0}, 8);
   Json accessor = {
-      {"bufferView", view}, {"componentType", kShort}, {"type", "VEC3"}, {"count", 3}, {"normalized", true}};
+      {"bufferView", view}, {"componentType", short_type}, {"type", "VEC3"}, {"count", 3}, {"normalized", true}};
   primitive(gltf)["targets"] = {{{"POSITION", gltf.append("accessors", accessor)}}};
   gltf.json["meshes"][0]["weights"] = {2};
   expect_positions(first(gltf.import()), {{0, 0, 0}, {3, 0, -2.0f * 16384 / 32767}, {0, 1, 0}});
@@ -118,7 +118,7 @@ TEST(Morph, TurnsNormalsAndTangents) {
   gltf.json["meshes"][0]["weights"] = {1};
   const Scene scene = gltf.import();
   const std::vector<Vertex>& vertices = first(scene).vertices;
-  const auto half = static_cast<float>(kHalf);
+  const auto half = static_cast<float>(sin_45);
   expect_near(vertices[0].normal_ls, {half, 0, half});
   expect_near(glm::vec3(vertices[0].tangent_ls), {half, 0, -half});
   EXPECT_EQ(vertices[0].tangent_ls.w, -1);
@@ -167,7 +167,7 @@ void set_target(GltfBuilder& gltf, int accessor) {
 }
 
 TEST(Morph, IsRefusedWhereItsShapeIsNotKnown) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
   expect_errors(
       [] {
         GltfBuilder gltf = morphed_triangle();
@@ -209,7 +209,7 @@ TEST(Morph, IsRefusedWhereItsShapeIsNotKnown) {
         "mesh 0, primitive 0, morph target 0, POSITION: accessor 4 has the wrong type (2 components)"},
        {"no number",
         [](GltfBuilder& g) {
-          set_target(g, g.add_floats({0, 0, 0, 0, kNan, 0, 0, 0, 0}, "VEC3", 3));
+          set_target(g, g.add_floats({0, 0, 0, 0, not_a_number, 0, 0, 0, 0}, "VEC3", 3));
         },
         "mesh 0, primitive 0, morph target 0, POSITION: value is not finite (nan in element 1)"},
        {"beyond a float",
@@ -223,7 +223,7 @@ TEST(Morph, IsRefusedWhereItsShapeIsNotKnown) {
 /// A thousand targets of one accessor of four million zeros: 4 GiB of sums for 30 kB of JSON.
 TEST(Morph, IsRefusedWhereItAsksForTooMuchBeforeAnythingIsRead) {
   GltfBuilder gltf = one_triangle();
-  const int zeros = gltf.append("accessors", {{"componentType", kFloat}, {"type", "VEC3"}, {"count", 4194304}});
+  const int zeros = gltf.append("accessors", {{"componentType", float_type}, {"type", "VEC3"}, {"count", 4194304}});
   for (int i = 0; i < 1000; ++i) {
     primitive(gltf)["targets"].push_back({{"POSITION", zeros}});
     gltf.json["meshes"][0]["weights"].push_back(1);
@@ -251,7 +251,7 @@ GltfBuilder posed_triangle() {
   Json& attributes = primitive(gltf)["attributes"];
   attributes["NORMAL"] = gltf.add_floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
   attributes["JOINTS_0"] =
-      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, kUnsignedByte, "VEC4", 3);
+      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
   attributes["WEIGHTS_0"] = gltf.add_floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
   return gltf;
 }
@@ -294,7 +294,7 @@ TEST(PosedSkin, IsBakedAsStaticGeometryWhereItsJointsHaveIt) {
 /// A quarter turn of the knee about x takes z to -y, and half a turn of normals goes with it.
 TEST(PosedSkin, TurnsNormals) {
   GltfBuilder gltf = posed_triangle();
-  gltf.json["nodes"][2]["rotation"] = {kHalf, 0, 0, kHalf};
+  gltf.json["nodes"][2]["rotation"] = {sin_45, 0, 0, sin_45};
   const Scene scene = gltf.import();
   expect_near(first(scene).vertices[0].normal_ls, {0, 0, 1});
   expect_near(first(scene).vertices[2].normal_ls, {0, -1, 0});
@@ -303,7 +303,7 @@ TEST(PosedSkin, TurnsNormals) {
 /// Stretched along z by 4, a normal of (0, 1, 1) / √2 becomes (0, 1, 1/4).
 TEST(PosedSkin, TakesNormalsThroughTheInverseTranspose) {
   GltfBuilder gltf = posed_triangle();
-  const auto half = static_cast<float>(kHalf);
+  const auto half = static_cast<float>(sin_45);
   primitive(gltf)["attributes"]["NORMAL"] = gltf.add_floats({0, half, half, 0, half, half, 0, half, half}, "VEC3", 3);
   gltf.json["nodes"][1]["scale"] = {1, 1, 4};
   expect_near(first(gltf.import()).vertices[0].normal_ls, glm::normalize(glm::vec3(0, 1, 0.25f)));
@@ -329,7 +329,7 @@ TEST(PosedSkin, KeepsFrontsInFrontWhereAJointMirrors) {
 TEST(PosedSkin, BlendsItsJoints) {
   GltfBuilder gltf = posed_triangle();
   primitive(gltf)["attributes"]["JOINTS_0"] =
-      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}, kUnsignedByte, "VEC4", 3);
+      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}, unsigned_byte_type, "VEC4", 3);
   primitive(gltf)["attributes"]["WEIGHTS_0"] =
       gltf.add_floats({1, 0, 0, 0, 1, 0, 0, 0, 2, 2, 0, 0}, "VEC4", 4);  // which sum to 4
   gltf.json["nodes"][2]["translation"] = {0, 1, 3};
@@ -354,7 +354,7 @@ TEST(PosedSkin, IsMorphedFirst) {
   GltfBuilder gltf = posed_triangle();
   primitive(gltf)["targets"] = {{{"POSITION", gltf.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 2})}}};
   gltf.json["nodes"][0]["weights"] = {1};
-  gltf.json["nodes"][2]["rotation"] = {kHalf, 0, 0, kHalf};  // z to -y
+  gltf.json["nodes"][2]["rotation"] = {sin_45, 0, 0, sin_45};  // z to -y
   expect_near(corners_ws(gltf.import())[2], {5, -1, 0});
 }
 

@@ -13,8 +13,8 @@
 namespace chandelier::baker::test {
 namespace {
 
-const Json kFar = {500000, 40, -7000};  // 40 m is near
-const glm::dvec3 kFar_m(500000, 40, -7000);
+const Json far = {500000, 40, -7000};  // 40 m is near
+const glm::dvec3 far_m(500000, 40, -7000);
 
 /// A triangle, a lamp and a camera under a root node, which stands at `place`.
 GltfBuilder room_at(const Json& place) {
@@ -84,33 +84,33 @@ TEST(Recentre, LeavesWhatIsNearAlone) {
 }
 
 TEST(Recentre, KeepsPlacesToTheMicrometreFiveHundredKilometresAway) {
-  const pack::Contents pack = room_at(kFar).bake();
+  const pack::Contents pack = room_at(far).bake();
   EXPECT_EQ(pack.bake_info.origin_m.y, 0);
-  EXPECT_LT(glm::distance(pack.bake_info.origin_m, kFar_m), 50);
-  expect_near(first_corner(pack), kFar_m + glm::dvec3(0.1, 0.2, 0.3));
-  expect_near(in_file(pack, pack.lights.at(0).position_ws), kFar_m + glm::dvec3(0.7, 2.2, 1.1), 4e-6);
-  expect_near(in_file(pack, pack.lights.at(0).bounds_center_ws), kFar_m + glm::dvec3(0.7, 2.2, 1.1), 4e-6);
+  EXPECT_LT(glm::distance(pack.bake_info.origin_m, far_m), 50);
+  expect_near(first_corner(pack), far_m + glm::dvec3(0.1, 0.2, 0.3));
+  expect_near(in_file(pack, pack.lights.at(0).position_ws), far_m + glm::dvec3(0.7, 2.2, 1.1), 4e-6);
+  expect_near(in_file(pack, pack.lights.at(0).bounds_center_ws), far_m + glm::dvec3(0.7, 2.2, 1.1), 4e-6);
   EXPECT_EQ(pack.lights.at(1).position_ws, glm::vec3(0));  // the sun is nowhere
-  expect_near(in_file(pack, pack.cameras.at(0).position_ws), kFar_m + glm::dvec3(0.4, 1.6, 3.3), 4e-6);
-  expect_near(in_file(pack, pack.bake_info.bounds_min_ws), kFar_m + glm::dvec3(0.1, 0.2, 0.3), 4e-6);
-  EXPECT_TRUE(warnings_of(room_at(kFar)).empty());
+  expect_near(in_file(pack, pack.cameras.at(0).position_ws), far_m + glm::dvec3(0.4, 1.6, 3.3), 4e-6);
+  expect_near(in_file(pack, pack.bake_info.bounds_min_ws), far_m + glm::dvec3(0.1, 0.2, 0.3), 4e-6);
+  EXPECT_TRUE(warnings_of(room_at(far)).empty());
 }
 
 TEST(Recentre, MovesAllInputsAlike) {
   Scene scene;
   Warnings warnings;
-  import_gltf(room_at(kFar).save("room"), scene, warnings);
+  import_gltf(room_at(far).save("room"), scene, warnings);
   import_gltf(room_at({500030, 40, -7000}).save("next"), scene, warnings);
   const pack::Contents pack = bake_scene(std::move(scene), {});
   ASSERT_EQ(pack.lights.size(), 4u);
   EXPECT_NEAR(pack.bake_info.origin_m.x, 500015, 2);
-  expect_near(in_file(pack, pack.lights[0].position_ws), kFar_m + glm::dvec3(0.7, 2.2, 1.1), 4e-6);
-  expect_near(in_file(pack, pack.lights[2].position_ws), kFar_m + glm::dvec3(30.7, 2.2, 1.1), 4e-6);
+  expect_near(in_file(pack, pack.lights[0].position_ws), far_m + glm::dvec3(0.7, 2.2, 1.1), 4e-6);
+  expect_near(in_file(pack, pack.lights[2].position_ws), far_m + glm::dvec3(30.7, 2.2, 1.1), 4e-6);
 }
 
 /// The room, whose root an animation moves and turns.
 GltfBuilder moving_room(const char* interpolation) {
-  GltfBuilder gltf = room_at(kFar);
+  GltfBuilder gltf = room_at(far);
   const bool cubic = std::string(interpolation) == "CUBICSPLINE";
   std::vector<float> places;
   for (int key = 0; key < 2; ++key) {
@@ -139,8 +139,8 @@ TEST(Recentre, MovesARootThatIsAnimatedAtAnyTime) {
     ASSERT_GT(pack.bake_info.origin_m.x, 499000);
     ASSERT_EQ(text_of(pack, pack.nodes.at(0).name), "root");
     const pack::Node& root = pack.nodes[0];
-    expect_near(in_file(pack, root.translation), kFar_m);
-    expect_near(pack.bake_info.origin_m + glm::dvec3(matrix_of(root.parent_from_local)[3]), kFar_m);
+    expect_near(in_file(pack, root.translation), far_m);
+    expect_near(pack.bake_info.origin_m + glm::dvec3(matrix_of(root.parent_from_local)[3]), far_m);
     const pack::AnimationChannel& moves = pack.animation_channels.at(0);
     ASSERT_EQ(moves.path, pack::AnimationPath::translation);
     const auto value = [&](std::uint32_t i) {
@@ -149,7 +149,7 @@ TEST(Recentre, MovesARootThatIsAnimatedAtAnyTime) {
     };
     const bool cubic = moves.value_count == 18;
     for (std::uint32_t key = 0; key < 2; ++key) {
-      expect_near(in_file(pack, value(cubic ? 3 * key + 1 : key)), kFar_m + glm::dvec3(8 * key, 0, 0));
+      expect_near(in_file(pack, value(cubic ? 3 * key + 1 : key)), far_m + glm::dvec3(8 * key, 0, 0));
       if (cubic) {
         EXPECT_EQ(value(3 * key), glm::vec3(1, 2, 3));
         EXPECT_EQ(value(3 * key + 2), glm::vec3(4, 5, 6));
@@ -159,13 +159,13 @@ TEST(Recentre, MovesARootThatIsAnimatedAtAnyTime) {
       if (text_of(pack, node.name) != "wall") continue;
       EXPECT_EQ(node.translation, glm::vec3(0.1, 0.2, 0.3));
     }
-    expect_near(first_corner(pack), kFar_m + glm::dvec3(0.1, 0.2, 0.3));
+    expect_near(first_corner(pack), far_m + glm::dvec3(0.1, 0.2, 0.3));
   }
 }
 
 // The rest pose of each joint, times its bind matrix, is the file's less the origin; so is the instance's place.
 TEST(Recentre, MovesJointsWithTheirSkin) {
-  GltfBuilder gltf = room_at(kFar);
+  GltfBuilder gltf = room_at(far);
   gltf.json["nodes"][0]["skin"] = 0;
   gltf.add_node({{"name", "joint"}, {"translation", {0, 7, 0}}});
   gltf.json["nodes"][4]["children"].push_back(5);
@@ -174,9 +174,9 @@ TEST(Recentre, MovesJointsWithTheirSkin) {
        {"inverseBindMatrices", gltf.add_floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.5f, -7, 0, 1}, "MAT4", 16)}}};
   Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["JOINTS_0"] =
-      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, kUnsignedByte, "VEC4", 3);
+      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
   attributes["WEIGHTS_0"] = gltf.add_floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
-  const glm::dvec3 expected = kFar_m + glm::dvec3(0.5, 0, 0);
+  const glm::dvec3 expected = far_m + glm::dvec3(0.5, 0, 0);
   expect_near(first_corner(gltf.bake()), expected);  // it stands still: posed at bake
   const int times = gltf.add_floats({0, 2}, "SCALAR", 1);
   gltf.json["accessors"][times]["min"] = {0};

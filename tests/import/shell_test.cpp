@@ -17,7 +17,7 @@ namespace {
 
 using Corners = std::vector<std::uint32_t>;
 
-const std::vector<Material> kMaterials = [] {
+const std::vector<Material> materials = [] {
   std::vector<Material> out(2);
   out[1].masked = true;
   return out;
@@ -54,7 +54,7 @@ PackedPrimitive cube(const glm::vec3& at, std::size_t triangles = 12, bool insid
 
 ShellCounts shells_of(std::vector<PackedPrimitive> primitives, bool rigid = true) {
   PackedMesh mesh{std::move(primitives)};
-  return find_shells(mesh, kMaterials, rigid);
+  return find_shells(mesh, materials, rigid);
 }
 
 TEST(Shells, ACubeIsClosed) {
@@ -158,7 +158,7 @@ TEST(Clean, KeepsTheFirstOfEachTriangleWithAnArea) {
         ++duplicate;
       }
     });
-    const CleanCounts counts = clean(mesh, kMaterials, true);
+    const CleanCounts counts = clean(mesh, materials, true);
     each([&](const PackedPrimitive& primitive, std::size_t t) {
       kept.emplace_back(turned(primitive, t), primitive.material);
     });
@@ -181,24 +181,24 @@ TEST(Clean, KeepsWhatASkinMayPullApart) {
   PackedMesh mesh = twins(0);
   mesh.primitives[0].vertices.push_back({{2, 0, 0}, {}});
   mesh.primitives[0].indices.insert(mesh.primitives[0].indices.end(), {0, 1, 6, 0, 1, 1});  // flat, and without a third
-  const CleanCounts counts = clean(mesh, kMaterials, false);
+  const CleanCounts counts = clean(mesh, materials, false);
   EXPECT_EQ(counts.duplicate, 0u);
   EXPECT_EQ(counts.degenerate, 1u);
   EXPECT_EQ(mesh.primitives[0].indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 0, 1, 6}));
 }
 
 TEST(Clean, TellsMaskedTrianglesApartByWhatTheirAlphaDependsOn) {
-  constexpr std::uint32_t kOpaque = 0, kMasked = 1;
+  constexpr std::uint32_t opaque_material = 0, masked_material = 1;
   for (const int change : {0, 1, 2, 3}) {
-    for (const std::uint32_t material : {kOpaque, kMasked}) {
+    for (const std::uint32_t material : {opaque_material, masked_material}) {
       PackedMesh mesh = twins(material);
       pack::VertexAttributes& other = mesh.primitives[0].vertices[4].attributes;
       if (change == 1) other.uv0.y += 0.5f;
       if (change == 2) other.uv1.x += 0.5f;
       if (change == 3) other.color ^= 0x80000000u;
-      ASSERT_EQ(kMaterials[material].masked, material == kMasked);
-      const bool kept = change > 0 && material == kMasked;
-      EXPECT_EQ(clean(mesh, kMaterials, true).duplicate, kept ? 0u : 1u) << change << " " << material;
+      ASSERT_EQ(materials[material].masked, material == masked_material);
+      const bool kept = change > 0 && material == masked_material;
+      EXPECT_EQ(clean(mesh, materials, true).duplicate, kept ? 0u : 1u) << change << " " << material;
     }
   }
 }
@@ -277,9 +277,9 @@ TEST(Shells, AgreeWithOpenMeshWhereItHoldsTheMesh) {
       }
     }
     PackedMesh mesh{{primitive}};
-    clean(mesh, kMaterials, true);
+    clean(mesh, materials, true);
     const auto expected = shells_by_openmesh(mesh.primitives[0]);
-    const ShellCounts counts = find_shells(mesh, kMaterials, true);  // must not fail either way
+    const ShellCounts counts = find_shells(mesh, materials, true);  // must not fail either way
     if (!expected) continue;
     ++compared;
     closed += static_cast<int>(expected->closed);
@@ -305,7 +305,7 @@ TEST(Shells, OfManyCubesAreTheSameOnAnyNumberOfThreads) {
   for (const std::size_t threads : {1u, 2u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     PackedMesh copy = mesh;
-    EXPECT_EQ(find_shells(copy, kMaterials, true).closed, 4000u);
+    EXPECT_EQ(find_shells(copy, materials, true).closed, 4000u);
     closed[threads - 1] = copy.primitives[0].closed;
   }
   EXPECT_EQ(closed[0], closed[1]);

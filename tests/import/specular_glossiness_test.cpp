@@ -147,7 +147,7 @@ TEST(SpecularGlossiness, FactorsAloneBecomeFactors) {
   EXPECT_LT(glm::length(material.base_color_factor - glm::vec4(1, 0.766f, 0.336f, 0.5f)), 1e-3f);
   EXPECT_NEAR(material.metallic_factor, 1, 1e-3);
   EXPECT_NEAR(material.roughness_factor, 0.1, 1e-6);
-  EXPECT_EQ(material.base_color.texture, kNone);
+  EXPECT_EQ(material.base_color.texture, no_index);
   EXPECT_TRUE(warnings.lines().empty());
 }
 
@@ -219,7 +219,7 @@ TEST(SpecularGlossiness, WhoseMirrorIsLeftOutIsNoMirror) {
   EXPECT_EQ(material.metallic_factor, 0);
   EXPECT_EQ(material.roughness_factor, 1);
   EXPECT_EQ(scene.textures.at(material.base_color.texture).image, 0u);  // the diffuse image as it is
-  EXPECT_EQ(material.metallic_roughness.texture, kNone);
+  EXPECT_EQ(material.metallic_roughness.texture, no_index);
 }
 
 /// A material of a diffuse image `long_side` wide and one high, and a mirror's image that stands on end.

@@ -126,8 +126,8 @@ TEST(TriangleBox, AgreesWithExactTestOnSmallWholeNumbers) {
 /// it.
 TEST(TriangleBox, MissesNothingThatTouchesOnLargeWholeNumbers) {
   std::mt19937 random(2);
-  constexpr long kRange = 1 << 16;
-  std::uniform_int_distribution<long> number(-kRange, kRange), near(-2, 2), which(0, 2);
+  constexpr long range_steps = 1 << 16;
+  std::uniform_int_distribution<long> number(-range_steps, range_steps), near(-2, 2), which(0, 2);
   int overlapping = 0;
   for (int i = 0; i < 300000; ++i) {
     IntBox box{{number(random), number(random), number(random)}, {}};
@@ -146,7 +146,7 @@ TEST(TriangleBox, MissesNothingThatTouchesOnLargeWholeNumbers) {
     }
     const bool expected = exactly_overlap(t, box);
     overlapping += expected;
-    ASSERT_TRUE(!expected || tested_overlap(t, box, 0x1p-47 * 4 * kRange)) << i;
+    ASSERT_TRUE(!expected || tested_overlap(t, box, 0x1p-47 * 4 * range_steps)) << i;
   }
   EXPECT_GT(overlapping, 50000);
 }

@@ -64,7 +64,7 @@ pack::Contents bake_file(const std::string& path) {
   return bake_scene(std::move(scene), settings);
 }
 
-constexpr VoxelSettings kClip = {{32, 32, 32}, pack::VoxelMode::clip};
+constexpr VoxelSettings clip_settings = {{32, 32, 32}, pack::VoxelMode::clip};
 
 TEST(Voxels, HaveEachTriangleInEachCellThatItOverlaps) {
   const pack::Contents pack = soup(2000, 1).bake();
@@ -92,7 +92,7 @@ TEST(Voxels, HaveTrianglesThatLieInFacesOnBothSides) {
   gltf.add_node({{"mesh", 0}});
   const pack::Contents pack = gltf.bake();
   expect_separate(pack);
-  expect_clipped(with_voxels(pack, kClip));
+  expect_clipped(with_voxels(pack, clip_settings));
 }
 
 TEST(Voxels, HaveAllAreaOnceWhereTheyAreClipped) {
@@ -160,7 +160,7 @@ TEST(Voxels, HoldNothingThatMoves) {
   const pack::Contents some = with_voxels(pack, {});
   expect_separate(some);
   for (const pack::VoxelRun& run : some.voxel_runs) EXPECT_NE(run.instance, 1u);
-  expect_clipped(with_voxels(pack, kClip));
+  expect_clipped(with_voxels(pack, clip_settings));
   for (pack::Instance& instance : pack.instances) instance.dynamic = 1;
   EXPECT_TRUE(with_voxels(pack, {}).voxel_grid.empty());
 }
@@ -169,7 +169,7 @@ TEST(Voxels, HoldNothingThatThrowsNoShadow) {
   pack::Contents pack = soup(400, 6).bake();
   ASSERT_GT(pack.instances.size(), 1u);
   pack.instances[1].shadowless = 1;
-  for (const VoxelSettings& settings : {VoxelSettings{}, kClip}) {
+  for (const VoxelSettings& settings : {VoxelSettings{}, clip_settings}) {
     const pack::Contents some = with_voxels(pack, settings);
     EXPECT_EQ(pack::check(pack::view_of(some)), "");
     ASSERT_FALSE(some.voxel_runs.empty());
@@ -191,7 +191,7 @@ TEST(Voxels, HoldFlatScenes) {
     gltf.add_node({{"mesh", 0}});
     const pack::Contents pack = gltf.bake();
     expect_separate(pack);
-    expect_clipped(with_voxels(pack, kClip));
+    expect_clipped(with_voxels(pack, clip_settings));
   }
 }
 
@@ -282,7 +282,7 @@ TEST_P(VoxelScenes, MissNoTriangleAndLoseNoArea) {
   if (!std::filesystem::exists(std::string(CHANDELIER_DATA_DIR) + path)) GTEST_SKIP() << path << " is not here";
   const pack::Contents pack = bake_file(path);
   expect_separate(pack);
-  expect_clipped(with_voxels(pack, kClip));
+  expect_clipped(with_voxels(pack, clip_settings));
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, VoxelScenes,

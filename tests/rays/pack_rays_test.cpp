@@ -331,7 +331,7 @@ TEST_P(PackRaysOfScenes, AgreeWithEmbree) {
   for (baker::Material& material : scene.materials) {  // geometry only
     for (baker::TextureUse* use : {&material.base_color, &material.metallic_roughness, &material.normal,
                                    &material.occlusion, &material.emissive_map}) {
-      use->texture = baker::kNone;
+      use->texture = baker::no_index;
     }
   }
   const pack::Contents pack = bake(std::move(scene));

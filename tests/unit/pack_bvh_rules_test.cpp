@@ -177,16 +177,16 @@ TEST(PackBvhRulesLimits, AreasMayEndAtTheGreatestFloat) {
 // A path of a million nodes: each inner node has one leaf and the rest. Neither it nor a fault at its end may overflow
 // the stack.
 TEST(PackBvhRulesLimits, ATreeMayBeAPath) {
-  constexpr std::uint32_t kLeaves = 500000;
+  constexpr std::uint32_t leaves = 500000;
   Contents contents = sample();
   contents.instance_bvh.clear();
   contents.instance_bvh_items.clear();
-  contents.batch_instances.assign(kLeaves, contents.batch_instances[0]);
+  contents.batch_instances.assign(leaves, contents.batch_instances[0]);
   contents.batch_bvh.clear();
   contents.batch_bvh_items.clear();
   const BatchInstance& draw = contents.batch_instances[0];
-  for (std::uint32_t i = 0; i < kLeaves; ++i) {
-    if (i + 1 < kLeaves) contents.batch_bvh.push_back({draw.bounds_min_ws, 2 * kLeaves - 1, draw.bounds_max_ws, none});
+  for (std::uint32_t i = 0; i < leaves; ++i) {
+    if (i + 1 < leaves) contents.batch_bvh.push_back({draw.bounds_min_ws, 2 * leaves - 1, draw.bounds_max_ws, none});
     const auto number = static_cast<std::uint32_t>(contents.batch_bvh.size());
     contents.batch_bvh.push_back({draw.bounds_min_ws, number + 1, draw.bounds_max_ws, i * 16 + 1});
     contents.batch_bvh_items.push_back({i});

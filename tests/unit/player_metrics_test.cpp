@@ -129,7 +129,7 @@ TEST(PlayerMetrics, SsimNeedsRoomForItsWindow) {
 }
 
 TEST(PlayerMetrics, FlipIsItsAuthors) {
-  EXPECT_NEAR(kFlipPixelsPerDegree, 67.020645, 1e-5);
+  EXPECT_NEAR(flip_pixels_per_degree, 67.020645, 1e-5);
   const Picture a = picture_of(scene);
   for (const Case& c : cases) {
     const std::vector<float> map = flip_map(a, picture_of(c.formula));

@@ -56,7 +56,7 @@ TEST(PlayerOptions, Defaults) {
 TEST(PlayerOptions, TheHeadlightIsLeftToThePackUnlessAsked) {
   EXPECT_FALSE(accepted("scene.chandelier").headlight);
   EXPECT_FALSE(accepted("scene.chandelier --headlight auto").headlight);
-  EXPECT_EQ(accepted("scene.chandelier --headlight on").headlight, kHeadlightOn);
+  EXPECT_EQ(accepted("scene.chandelier --headlight on").headlight, headlight_on);
   EXPECT_EQ(accepted("scene.chandelier --headlight off").headlight, 0.0f);
   EXPECT_EQ(accepted("scene.chandelier --headlight 2.5").headlight, 2.5f);
   for (const char* wrong : {"bright", "-1", "nan", "1e7"})

@@ -23,29 +23,30 @@ std::array<uint8_t, 3> color_along(std::span<const Stop> stops, float t) {
 }  // namespace
 
 std::array<uint8_t, 3> heat_color(float t) {
-  static constexpr std::array<Stop, 5> kStops{{{0, 0, 90}, {0, 60, 200}, {0, 220, 255}, {255, 230, 0}, {255, 0, 0}}};
-  return color_along(kStops, t);
+  static constexpr std::array<Stop, 5> color_stops{
+      {{0, 0, 90}, {0, 60, 200}, {0, 220, 255}, {255, 230, 0}, {255, 0, 0}}};
+  return color_along(color_stops, t);
 }
 
 std::array<uint8_t, 3> magma_color(float t) {
-  static constexpr std::array<Stop, 17> kStops{{{0, 0, 4},
-                                                {10, 8, 34},
-                                                {29, 17, 71},
-                                                {54, 16, 107},
-                                                {81, 18, 124},
-                                                {106, 28, 129},
-                                                {131, 38, 129},
-                                                {156, 46, 127},
-                                                {183, 55, 121},
-                                                {207, 64, 112},
-                                                {229, 80, 100},
-                                                {244, 105, 92},
-                                                {251, 135, 97},
-                                                {254, 165, 113},
-                                                {254, 194, 135},
-                                                {253, 224, 161},
-                                                {252, 253, 191}}};
-  return color_along(kStops, t);
+  static constexpr std::array<Stop, 17> color_stops{{{0, 0, 4},
+                                                     {10, 8, 34},
+                                                     {29, 17, 71},
+                                                     {54, 16, 107},
+                                                     {81, 18, 124},
+                                                     {106, 28, 129},
+                                                     {131, 38, 129},
+                                                     {156, 46, 127},
+                                                     {183, 55, 121},
+                                                     {207, 64, 112},
+                                                     {229, 80, 100},
+                                                     {244, 105, 92},
+                                                     {251, 135, 97},
+                                                     {254, 165, 113},
+                                                     {254, 194, 135},
+                                                     {253, 224, 161},
+                                                     {252, 253, 191}}};
+  return color_along(color_stops, t);
 }
 
 std::vector<uint8_t> colored(std::span<const float> values, float scale, ColorMap colors) {

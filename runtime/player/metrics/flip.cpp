@@ -15,11 +15,11 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kColorExponent = 0.7;      // q_c
-constexpr double kColorKnee = 0.4;          // p_c, of the largest colour difference
-constexpr double kColorAtKnee = 0.95;       // p_t
-constexpr double kFeatureWidthDeg = 0.082;  // w
-constexpr double kFeatureExponent = 0.5;    // q_f
+constexpr double color_exponent = 0.7;       // q_c
+constexpr double color_knee = 0.4;           // p_c, of the largest colour difference
+constexpr double color_at_knee = 0.95;       // p_t
+constexpr double feature_width_deg = 0.082;  // w
+constexpr double feature_exponent = 0.5;     // q_f
 
 // Y, Cx and Cz, or L*, a* and b*.
 using Channels = std::array<Plane, 3>;
@@ -76,18 +76,18 @@ struct Sensitivity {
   double amplitude;  // a of a sqrt(π / b) exp(-π² x² / b), x in degrees
   double b;
 };
-constexpr std::array<Sensitivity, 1> kLuminance{{{1.0, 0.0047}}};
-constexpr std::array<Sensitivity, 1> kRedGreen{{{1.0, 0.0053}}};
-constexpr std::array<Sensitivity, 2> kBlueYellow{{{34.1, 0.04}, {13.5, 0.025}}};
-constexpr double kWidestB = 0.04;
+constexpr std::array<Sensitivity, 1> luminance_sensitivity{{{1.0, 0.0047}}};
+constexpr std::array<Sensitivity, 1> red_green_sensitivity{{{1.0, 0.0053}}};
+constexpr std::array<Sensitivity, 2> blue_yellow_sensitivity{{{34.1, 0.04}, {13.5, 0.025}}};
+constexpr double widest_b = 0.04;
 
 double sigma_px(double b) {
-  return std::sqrt(b / (2.0 * pi * pi)) * kFlipPixelsPerDegree;
+  return std::sqrt(b / (2.0 * pi * pi)) * flip_pixels_per_degree;
 }
 
 // A sum of Gaussians over the plane is not a product of sums over rows and columns: each is filtered by itself.
 Plane as_seen(const Plane& plane, std::span<const Sensitivity> terms) {
-  const int radius = static_cast<int>(std::ceil(3.0 * sigma_px(kWidestB)));
+  const int radius = static_cast<int>(std::ceil(3.0 * sigma_px(widest_b)));
   Plane sum{plane.width, plane.height, std::vector<double>(plane.values.size())};
   double total = 0.0;
   std::vector<double> weights;
@@ -120,7 +120,8 @@ Channels opponent_channels(const ColorSpaces& spaces, const Picture& picture) {
 
 // What is left of a picture's colours at this distance, ready to be compared.
 Channels seen_colors(const ColorSpaces& spaces, const Channels& channels) {
-  Channels seen{as_seen(channels[0], kLuminance), as_seen(channels[1], kRedGreen), as_seen(channels[2], kBlueYellow)};
+  Channels seen{as_seen(channels[0], luminance_sensitivity), as_seen(channels[1], red_green_sensitivity),
+                as_seen(channels[2], blue_yellow_sensitivity)};
   for (std::size_t i = 0; i < seen[0].values.size(); ++i) {
     const glm::dvec3 rgb = rgb_of_ycxcz(spaces, {seen[0].values[i], seen[1].values[i], seen[2].values[i]});
     const glm::dvec3 lab = hunt_lab(spaces, glm::clamp(rgb, 0.0, 1.0));
@@ -131,9 +132,9 @@ Channels seen_colors(const ColorSpaces& spaces, const Channels& channels) {
 
 // Redistribution: differences up to a part of the largest possible one, green against blue, take most of the scale.
 double scaled_color_difference(double difference, double largest) {
-  const double knee = kColorKnee * largest;
-  return difference < knee ? kColorAtKnee * difference / knee
-                           : kColorAtKnee + (1.0 - kColorAtKnee) * (difference - knee) / (largest - knee);
+  const double knee = color_knee * largest;
+  return difference < knee ? color_at_knee * difference / knee
+                           : color_at_knee + (1.0 - color_at_knee) * (difference - knee) / (largest - knee);
 }
 
 // Feature detection: the Gaussian's derivatives, whose positive weights sum to 1 and negative ones to -1.
@@ -157,7 +158,7 @@ Plane magnitude(Plane x, const Plane& y) {
 // Of luminance 0..1.
 Features features(Plane luminance) {
   for (double& y : luminance.values) y = (y + 16.0) / 116.0;
-  const double sigma = 0.5 * kFeatureWidthDeg * kFlipPixelsPerDegree;
+  const double sigma = 0.5 * feature_width_deg * flip_pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3.0 * sigma));
   const Kernel bell = gaussian(radius, sigma);
   Kernel slope = bell, bend = bell;
@@ -177,17 +178,17 @@ std::vector<float> flip_map(const Picture& a, const Picture& b) {
   const Channels channels_a = opponent_channels(spaces, a), channels_b = opponent_channels(spaces, b);
   const Features features_a = features(channels_a[0]), features_b = features(channels_b[0]);
   const Channels seen_a = seen_colors(spaces, channels_a), seen_b = seen_colors(spaces, channels_b);
-  const double largest = std::pow(hyab(hunt_lab(spaces, {0, 1, 0}), hunt_lab(spaces, {0, 0, 1})), kColorExponent);
+  const double largest = std::pow(hyab(hunt_lab(spaces, {0, 1, 0}), hunt_lab(spaces, {0, 0, 1})), color_exponent);
   std::vector<float> map(channels_a[0].values.size());
   for (std::size_t i = 0; i < map.size(); ++i) {
     const auto lab = [i](const Channels& seen) {
       return glm::dvec3(seen[0].values[i], seen[1].values[i], seen[2].values[i]);
     };
-    const double color = scaled_color_difference(std::pow(hyab(lab(seen_a), lab(seen_b)), kColorExponent), largest);
+    const double color = scaled_color_difference(std::pow(hyab(lab(seen_a), lab(seen_b)), color_exponent), largest);
     const double feature = std::max(std::abs(features_a.edges.values[i] - features_b.edges.values[i]),
                                     std::abs(features_a.points.values[i] - features_b.points.values[i]));
     // A difference of features raises that of colours.
-    map[i] = static_cast<float>(std::pow(color, 1.0 - std::pow(feature / std::numbers::sqrt2, kFeatureExponent)));
+    map[i] = static_cast<float>(std::pow(color, 1.0 - std::pow(feature / std::numbers::sqrt2, feature_exponent)));
   }
   return map;
 }

@@ -11,7 +11,7 @@
 namespace chandelier::player {
 
 /// The paper's viewer: 0.7 m before a screen 0.7 m wide with 3840 pixels; about 67.
-constexpr double kFlipPixelsPerDegree = 0.7 * (3840.0 / 0.7) * std::numbers::pi / 180.0;
+constexpr double flip_pixels_per_degree = 0.7 * (3840.0 / 0.7) * std::numbers::pi / 180.0;
 
 /// Per pixel of the shown pictures, rows from the top: 0 where they look alike, 1 where they could not differ more. It
 /// does not matter which of the two is which. Both of one size.
