@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Budgets: the recipe that keeps one, and the lights that lose their own shadow map by it.
+// Budgets: the recipe that meets one, and the lights that lose their own shadow map because of it.
 #pragma once
 
 #include "player/camera.h"
@@ -11,13 +11,13 @@ namespace chandelier::player {
 /// the list's order.
 std::vector<SharedMap> shared_maps(const pack::File& pack, const World& world, const LightList& list);
 
-/// Where a budget is given, gives a recipe with light clusters the d_init that keeps it, and tells error-driven
-/// selection the budget; says on stderr what that means for the view of `settings`, which get the recipe too.
+/// If there is a budget: chooses the d_init of a recipe with light clusters, or passes the budget to error-driven
+/// selection. Prints on stderr what that means for the view of `settings`, and stores the recipe there too.
 void apply_budget(const Budget& budget, NamedRecipe& named, RenderSettings& settings, Predictor& predictor,
                   const pack::File& pack, const World& world);
 
-/// The same for all recipes and the camera at the start. Not for a comparison, whose second side is exposed as the
-/// first was drawn.
+/// The same for all recipes and the first camera. Not for a comparison: its second side takes the exposure of the
+/// first.
 void apply_budget(Options& options, const NamedCamera& camera, const pack::File& pack, const World& world);
 
 }  // namespace chandelier::player

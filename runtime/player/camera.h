@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a picture is taken from: a pack's camera, numbers, or a view of everything; and how one flies.
+// Cameras: of a pack, from numbers, or a view of everything; and flying.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace chandelier::player {
 
-/// Who chose a camera: someone, or the program for a pack that has none, and then what of it.
+/// How a camera was chosen: asked for, or by the program for a pack without cameras, and then which view.
 enum class ChosenView { asked, whole, without_sky, inside };
 
 std::string_view name_of(ChosenView chosen);
@@ -31,12 +31,11 @@ struct FileCamera {
 Camera in_world(const FileCamera& camera, const glm::dvec3& origin_m);
 FileCamera in_file(const Camera& camera, const glm::dvec3& origin_m);
 
-/// True where `text` is meant as numbers rather than as a name: "1,2,3,…".
+/// True if `text` looks like numbers, "1,2,3,…", not like a name.
 bool is_camera_numbers(std::string_view text);
-/// "ex,ey,ez,tx,ty,tz,fov_deg": eye and target in metres, whole vertical angle in degrees. Nothing where it is
-/// malformed.
+/// "ex,ey,ez,tx,ty,tz,fov_deg": eye and target in metres, whole vertical angle in degrees. Empty if it is malformed.
 std::optional<FileCamera> camera_from_numbers(std::string_view text);
-/// The same of a camera, for somebody to type.
+/// The inverse: a camera as text for --camera.
 std::string camera_numbers(const pack::View& pack, const Camera& camera);
 /// Upright (+Y) unless it looks straight up or down.
 Camera camera_looking_at(const glm::vec3& eye_ws, const glm::vec3& target_ws, float yfov_rad);

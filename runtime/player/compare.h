@@ -33,13 +33,13 @@ struct Comparison {
   std::string flip_image;
 };
 
-/// RMSE and largest error are over R, G and B of every pixel; `flip` is flip_map() of the two, of which it takes the
-/// mean. Both of the same size.
+/// RMSE and largest error are over R, G and B of every pixel. `flip` is flip_map() of the two pictures; its mean is
+/// stored. Both have the same size.
 Differences differences(const Picture& a, const Picture& b, std::span<const float> flip);
 /// Per pixel: the largest difference of a shown channel, 0..1.
 std::vector<float> shown_differences(const Picture& a, const Picture& b);
-/// The value that 99.9 % of `values` do not exceed, so that a few stray pixels do not darken the map; where that is 0
-/// their largest, and 1/255 where they all are 0.
+/// The value that 99.9 % of `values` do not exceed, so that a few stray pixels do not darken the map. If it is 0, the
+/// largest value; if all are 0, 1/255.
 float heat_scale(std::vector<float> values);
 nlohmann::ordered_json to_json(const Comparison& comparison);
 

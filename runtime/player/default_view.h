@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a pack without cameras is looked at from: a place that sees something lit.
+// The camera for a pack without cameras: a view of something lit.
 #pragma once
 
 #include "player/camera.h"
 
 namespace chandelier::player {
 
-/// All of the scene from a corner above, if a tenth of what is seen from there is lit. Else all but sky and lamps,
-/// whose own colour is what is seen; else from inside, standing near a light. Where none of them sees more, all of the
-/// scene. Where there are no lights, every surface that a light could change counts as lit. The same pack gets the same
-/// view. Rays on the CPU find it: no more of them in a large scene than in a small one.
+/// The whole scene from a corner above, if a tenth of the visible surfaces are lit. Else the same without unlit and
+/// emissive surfaces (sky, lamps). Else a view from inside, near a light. If none of these shows more, the first.
+/// Without lights, every surface that a light could change counts as lit. The same pack gets the same view. Rays on the
+/// CPU decide; their number does not depend on the size of the scene.
 NamedCamera default_view(const pack::View& pack, float aspect);
 
 }  // namespace chandelier::player

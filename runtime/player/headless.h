@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws into a file, with no display.
+// Draws into a file, without a display.
 #pragma once
 
 #include "player/camera.h"

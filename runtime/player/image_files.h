@@ -15,7 +15,7 @@ namespace chandelier::player {
 
 enum class ImageKind { png, exr, pfm };
 
-/// By extension, any case; nothing where this build cannot write it.
+/// By extension, in any case; empty if this build cannot write it.
 std::optional<ImageKind> image_kind(const std::filesystem::path& path);
 /// ".png, .exr or .pfm": what image_kind() knows.
 std::string image_kinds_text();
@@ -25,12 +25,12 @@ void write_picture(const std::filesystem::path& path, const Picture& picture);
 /// `rgb` holds 8 bits a channel, rows from the top.
 void write_png(const std::filesystem::path& path, uint32_t width, uint32_t height, std::span<const uint8_t> rgb);
 
-/// Writes beside `path` and renames over it, so that a failure leaves nothing and an older file stays; what is not a
-/// regular file (/dev/stdout) is written in place. Throws std::runtime_error, one line.
+/// Writes beside `path` and renames, so a failure leaves the older file. What is not a regular file (/dev/stdout) is
+/// written in place. Throws std::runtime_error, one line.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 /// Makes a folder, and those above it, unless it is there. Throws std::runtime_error.
 void make_folder(const std::filesystem::path& folder);
-/// Throws std::runtime_error where write_file() could not make `path`, before any time is spent on what goes there.
+/// Throws std::runtime_error if write_file() cannot make `path`. Call it before long work.
 void check_writable(const std::filesystem::path& path);
 
 }  // namespace chandelier::player

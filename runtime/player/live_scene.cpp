@@ -38,7 +38,7 @@ LiveScene::LiveScene(const Options& asked, std::unique_ptr<const Scene> scene, g
   settings = put_on_device(*scene_);
 }
 
-// Two scenes at once may be too many: the device holds none meanwhile, and none where this throws.
+// Two scenes may not fit on the device, so the old one is removed first. If this throws, none is there.
 RenderSettings LiveScene::put_on_device(const Scene& scene) {
   device_->vkDeviceWaitIdle(device_.handle);
   on_device_.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene on the device that follows its file: whatever replaces the pack is shown in its place.
+// A scene on the device that follows its file: a pack that replaces the file is shown.
 #pragma once
 
 #include <chrono>
@@ -15,19 +15,18 @@ class LiveScene {
   /// `scene` was opened with `asked`. Throws gpu::Error.
   LiveScene(const Options& asked, std::unique_ptr<const Scene> scene, gpu::Device& device);
 
-  /// Looks at the file twice a second. A pack that has taken the shown one's place and is not being written any more
-  /// is shown from now on, with the settings' camera and size; a camera that is still as the pack had it follows the
-  /// pack's. One that cannot be shown leaves the older one and a warning on stderr. True where anything of that
-  /// happened: what was drawn before is out of date. Throws gpu::Error where not even the
-  /// older one can be shown again.
+  /// Checks the file twice per second. If another pack has taken its place and is no longer being written, shows that
+  /// one, with the settings' camera and size. A camera that was not moved follows the pack's camera. If the new pack
+  /// cannot be shown, the older one stays, with a warning on stderr. Returns true if the last picture is out of date.
+  /// Throws gpu::Error if not even the older pack can be shown again.
   bool follow();
 
-  /// On where it is off; stays so when the pack is replaced.
+  /// Switches the headlight on or off; it stays so when the pack is replaced.
   void toggle_headlight();
 
   const Scene& scene() const { return *scene_; }
   Renderer& renderer() { return on_device_->renderer; }
-  /// What the file holds cannot be shown: this is what it held before.
+  /// True if the file's present content cannot be shown, and this is the older one.
   bool is_older() const { return is_older_; }
 
   RenderSettings settings;  // of the next frame; camera, size and previous centres are the caller's to change

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What chandelier-play is asked to do: the command line, checked.
+// The command line of chandelier-play, parsed and checked.
 #pragma once
 
 #include <cstdint>
@@ -43,17 +43,17 @@ struct Options {
   std::string device;
   bool validation = false;
   float ambient = 0.0f;
-  std::optional<float> headlight;  // absent: as automatic_headlight() finds it for the pack
+  std::optional<float> headlight;  // absent: automatic_headlight() decides for the pack
   std::optional<float> exposure_ev;
   std::optional<float> anisotropy;  // absent: as RendererOptions has it
 };
 
-/// Truth: its visibility is asked of rays on the CPU.
+/// Whether visibility comes from rays on the CPU (preset truth).
 inline bool traces_rays(const NamedRecipe& named) {
   return named.recipe.filter == Filter::rays;
 }
 
-/// Options, or what to print and the exit status to leave with.
+/// Options, or a text to print and the exit status.
 struct Parsed {
   std::optional<Options> options;
   int exit_code = 0;  // 0: help or version, in `text`; 2: usage error, one line in `text`
@@ -63,11 +63,11 @@ struct Parsed {
 /// `arguments` without the program's name.
 Parsed parse_options(const std::vector<std::string>& arguments);
 
-/// The settings of a frame of `recipe` as these options want it; `visibility` as visibility_for() has it.
+/// The settings of a frame with `recipe` and these options; `visibility` comes from visibility_for().
 RenderSettings render_settings(const Options& options, const Recipe& recipe, const Camera& camera,
                                const VisibilitySource& visibility);
 
-/// What the renderer of a pack is made with. A long upload shows its progress on a terminal.
+/// Options of the pack's renderer. A long upload shows its progress on a terminal.
 RendererOptions renderer_options(const Options& options);
 
 }  // namespace chandelier::player

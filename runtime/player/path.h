@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera moves along a recorded path: what changes from frame to frame though nothing but the camera moved.
+// A camera moves along a recorded path: measures what changes from frame to frame beside the camera's own motion.
 // schemas/path.schema.json describes the JSON that is written.
 #pragma once
 
@@ -17,8 +17,8 @@ struct PathStep {
   uint64_t lights_in_view = 0;
   uint64_t lights_kept_in_view = 0;  // of them, also a frame ago; 0 in the first frame
   uint64_t lights_changed = 0;       // of those, that took another light's map than a frame ago
-  /// RMSE of the shown picture against the same view with every light at the centre of a frame ago: what the selection
-  /// changed and the camera's motion does not explain. Lights that come into view or leave it change nothing here.
+  /// RMSE of the shown picture against the same view with every light held at its centre of the frame before: the
+  /// change that the selection causes, not the camera's motion. Lights that come into view or leave it do not count.
   double unexplained_rmse = 0.0;
 };
 
@@ -28,7 +28,7 @@ std::vector<Camera> read_path(const std::filesystem::path& file, uint32_t frames
 /// The same from keys. Eye, direction and angle go evenly from key to key.
 std::vector<Camera> cameras_along(const std::vector<Camera>& keys, uint32_t frames);
 
-/// Lights of both lists that have a centre in both, and how many of them have another one.
+/// The number of lights that have a centre in both lists, and how many of these have a different one.
 struct CenterChanges {
   uint64_t kept_in_view = 0;
   uint64_t changed = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --predict: what a frame will take. schemas/prediction.schema.json describes the JSON.
+// --predict: what a frame will cost. schemas/prediction.schema.json describes the JSON.
 #pragma once
 
 #include "player/camera.h"

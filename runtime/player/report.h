@@ -9,7 +9,7 @@
 
 namespace chandelier::player {
 
-/// `text` with & < > " ' made harmless, for element content and quoted attributes.
+/// `text` with & < > " ' escaped, for element content and quoted attributes.
 std::string escape_html(std::string_view text);
 
 /// The page; it links the comparison's images beside it and needs nothing else.

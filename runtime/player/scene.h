@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pack that was opened to be looked at: through which camera, and with recipes that keep the budget there.
+// An open pack with its camera, and recipes that meet the budget for that camera.
 #pragma once
 
 #include <sys/stat.h>
@@ -12,8 +12,8 @@
 
 namespace chandelier::player {
 
-/// Which file a path leads to and how it was left, so far as the file system tells; all 0 where there is none. Another
-/// one renamed over it, or written into it, is another stamp.
+/// Identifies a file and its state by what the file system tells; all 0 if there is no file. The stamp changes when
+/// another file is renamed over it, or when it is written to.
 struct FileStamp {
   dev_t device = 0;
   ino_t inode = 0;
@@ -25,13 +25,12 @@ struct FileStamp {
 FileStamp stamp_of(const std::filesystem::path& path);
 
 struct Scene {
-  /// Opens asked.pack and keeps the budget, but for a comparison, whose sides keep it as they are drawn. Says on stderr
-  /// what one should know of lights and camera. Throws pack::Error, and std::runtime_error where the pack has no such
-  /// camera.
+  /// Opens asked.pack and meets the budget; the sides of a comparison do that when they are drawn. Prints warnings
+  /// about lights and camera on stderr. Throws pack::Error, and std::runtime_error if the pack has no such camera.
   explicit Scene(const Options& asked);
 
   FileStamp stamp;  // from before the file was read
-  pack::File pack;  // a copy where it is drawn: what is written into the file after it was checked must not be seen
+  pack::File pack;  // a copy if it is drawn: later writes into the file must have no effect after the check
   World world;      // of the pack
   Options options;  // with the headlight that the pack needs, and recipes that keep the budget
   NamedCamera camera;

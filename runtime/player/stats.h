@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run took and did, for --stats and for reports. schemas/stats.schema.json describes the JSON.
+// The costs and counters of a run, for --stats and for reports. schemas/stats.schema.json describes the JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -27,10 +27,10 @@ class Swapchain {
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
 
-  /// The next image for a frame of this slot, whose last frame has finished. `window` is the size of the window now,
-  /// pixels; nothing where no picture would be seen: the window has no area, or has changed meanwhile. Throws.
+  /// The next image for a frame of this slot, whose last frame has finished. `window` is the present size of the window
+  /// in pixels. Empty if no picture can be shown: the window has no area, or has just changed. Throws.
   std::optional<WindowImage> acquire(uint32_t slot, VkExtent2D window);
-  /// Shows it once `drawn` is signalled; false where the window has changed meanwhile. Throws.
+  /// Shows it once `drawn` is signalled; false if the window has changed. Throws.
   bool present(const WindowImage& image);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Down instance_bvh in the world, then down the triangle BVH of each instance that is met, in its mesh's space. Nodes
-// lie depth first and say where a miss goes on, so that neither walk needs a stack.
+// A ray walks instance_bvh in the world, then the triangle BVH of each instance that it hits, in the mesh's space.
+// Nodes lie depth first and have a link for misses, so neither walk needs a stack.
 #include "rays/pack_rays.h"
 
 #include <span>
@@ -15,13 +15,13 @@ glm::dmat4 world_from_local(const pack::Instance& instance) {
   return m;
 }
 
-// Flat to what floats can tell: a scale of 0 along some way.
+// Flat within the precision of floats: the scale is 0 in some direction.
 bool has_inverse(const glm::dmat4& m) {
   const double size = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
   return std::abs(glm::determinant(m)) > 1e-6 * size && size > 0.0;
 }
 
-// Calls visit(item) for the leaves' items whose boxes the ray meets, until one says true. Whether one did.
+// Calls visit(item) for the items of leaves whose boxes the ray hits, until one returns true. Returns whether one did.
 template <typename Visit>
 bool walk(std::span<const pack::BvhNode> nodes, uint32_t first, uint32_t end, const Ray& ray, Visit visit) {
   for (uint32_t i = first; i < end;) {
@@ -70,7 +70,7 @@ void PackRays::gather_triangles() {
   }
 }
 
-// False where no tree leads to its triangles.
+// False if its triangles are in no tree.
 bool PackRays::place(uint32_t instance) {
   const glm::dmat4 m = world_from_local(instances_[instance]);
   const bool has_tree = has_inverse(m) && pack_.meshes[instances_[instance].mesh].node_count > 0;
@@ -123,7 +123,7 @@ std::array<glm::vec3, 3> PackRays::corners_ws(uint32_t instance, uint32_t first_
   return corners;
 }
 
-// t along the way is the same in the world and in the mesh's space, where the way's length is another.
+// t is the same in the world and in the mesh's space, although the direction has another length there.
 template <bool any_is_enough>
 bool PackRays::cast_at_instance(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets,
                                 Ray& ray, Met& met) const {
@@ -158,7 +158,7 @@ bool PackRays::cast_at_batch(uint32_t instance, uint32_t number, Meets meets, Ra
   return false;
 }
 
-// By its tree, or where it has none, or a matrix without inverse, by all its triangles.
+// Through its tree; or through all its triangles, if it has no tree or its matrix has no inverse.
 template <bool any_is_enough>
 bool PackRays::cast_at_moved(uint32_t instance, const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets,
                              Ray& ray, Met& met) const {

@@ -21,29 +21,29 @@ struct Hit {
   uint32_t material;
 };
 
-/// What a ray meets: all that is seen, or only what throws a shadow.
+/// What a ray can hit: all visible surfaces, or only those that cast a shadow.
 enum class Meets { surfaces, casters };
 
-/// Answers for the triangles of a pack, as it rests until set_transform() moves an instance. Alpha-masked
-/// materials are never met: what their texture leaves of them is not looked at. Safe to ask from several threads.
+/// Rays against the triangles of a pack at rest; set_transform() moves instances. Alpha-masked materials are never hit,
+/// since textures are not read. Several threads may call the const functions.
 class PackRays {
  public:
   /// What `pack` points to must outlive it. A pack without hierarchies is searched box by box, which is slow.
   explicit PackRays(const pack::View& pack);
 
-  /// Moves an instance: the rows of a 3×4 matrix. No thread may be asking meanwhile. Moved instances are tried one by
-  /// one, which takes time where there are many.
+  /// Moves an instance: the rows of a 3×4 matrix. No other thread may use the object meanwhile. Moved instances are
+  /// tested one by one, which is slow for many.
   void set_transform(uint32_t instance, const std::array<glm::vec4, 3>& world_from_local);
 
-  /// Does a triangle that throws a shadow lie strictly between? Both ends are shrunk by end_gap_m(), so that points on
-  /// surfaces do not meet their own.
+  /// Whether a triangle that casts a shadow lies strictly between the points. Both ends are moved inwards by
+  /// end_gap_m(), so that points on surfaces do not hit their own surface.
   bool blocked(const glm::vec3& from_ws, const glm::vec3& to_ws) const;
-  /// The first triangle, seen from either side, that lies less than max_m along `way_ws`, of any length but 0. One that
-  /// holds `from_ws` may be met at a distance of next to nothing: start off the surface.
+  /// The first triangle, seen from either side, nearer than max_m along `way_ws`, which has any length but 0. A
+  /// triangle that contains `from_ws` may be hit at a distance of almost 0: start off the surface.
   std::optional<Hit> first_hit(const glm::vec3& from_ws, const glm::vec3& way_ws, float max_m,
                                Meets meets = Meets::surfaces) const;
 
-  /// 1e-4 of the distance, or what floats leave uncertain this far from the origin where that is more.
+  /// 1e-4 of the distance, or the rounding error of floats this far from the origin if that is more.
   static float end_gap_m(const glm::vec3& from_ws, const glm::vec3& to_ws);
 
  private:
@@ -63,7 +63,7 @@ class PackRays {
   bool place(uint32_t instance);
   std::array<glm::vec3, 3> corners_ws(uint32_t instance, uint32_t first_index) const;
 
-  // Each returns whether it may stop: the ray has met something, and that is enough. Shortens the ray to what it meets.
+  // Each returns true if the search may stop, since any hit is enough. Shortens the ray to its hit.
   template <bool any_is_enough>
   bool cast(const glm::vec3& from_ws, const glm::vec3& way_ws, Meets meets, Ray& ray, Met& met) const;
   template <bool any_is_enough>
@@ -82,7 +82,7 @@ class PackRays {
   std::vector<Triangle> triangles_;            // as triangle_bvh_items
   std::vector<glm::mat4x3> local_from_world_;  // one per instance
   std::vector<uint32_t> unsorted_instances_;   // with a tree of their own, but not in instance_bvh
-  std::vector<uint32_t> loose_;                // batch instances that no tree leads to
+  std::vector<uint32_t> loose_;                // batch instances that are in no tree
   std::vector<bool> is_moved_;   // of each instance: set_transform() was called, so the lists above are wrong
   std::vector<uint32_t> moved_;  // those instances
 };

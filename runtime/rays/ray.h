@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray against boxes and triangles, so that what it meets is the same on both sides of an edge.
+// Tests of a ray against boxes and triangles; neighbours get the same answer at a shared edge.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace chandelier::rays {
 
-/// What lies at from + t · way for t between `nearest` and `farthest`. `way` has any length but 0.
+/// The points from + t · way, with t between `nearest` and `farthest`. `way` has any length but 0.
 class Ray {
  public:
   Ray(const glm::vec3& from, const glm::vec3& way, float t_nearest, float t_farthest)
@@ -28,7 +28,7 @@ class Ray {
   float nearest;
   float farthest;
 
-  /// May the ray meet anything in the box? Never a wrong "no" (Ize 2013, robust BVH ray traversal).
+  /// Whether the ray may hit something in the box; false only if it cannot (Ize 2013, robust BVH ray traversal).
   bool meets_box(const glm::vec3& low, const glm::vec3& high) const {
     const glm::vec3 a = (low - from_) * per_way_, b = (high - from_) * per_way_;
     const glm::vec3 enter = glm::min(a, b), leave = glm::max(a, b);

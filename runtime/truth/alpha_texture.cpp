@@ -52,7 +52,7 @@ std::vector<uint8_t> alpha_of(const pack::Image& image, std::span<const std::byt
   }
 }
 
-// Into a few periods around 0..1, so that a texel's number fits its type.
+// Reduced to a few periods around 0..1, so that a texel's number fits its type.
 float near_origin(float u, pack::Wrap wrap) {
   if (wrap == pack::Wrap::clamp_to_edge) return std::clamp(u, -1.0f, 2.0f);
   return u - 2.0f * std::floor(0.5f * u);

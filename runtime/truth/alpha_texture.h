@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an alpha test reads: the alpha of a pack's texture, on the CPU.
+// The alpha of a pack's texture on the CPU, for alpha tests.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace chandelier::truth {
 
-/// The largest level alone: a ray has no footprint that would ask for another one.
+/// Only the largest mip level: a ray has no footprint that would select another one.
 class AlphaTexture {
  public:
   /// Copies what it needs.

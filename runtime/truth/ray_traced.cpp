@@ -26,7 +26,7 @@ constexpr std::size_t points_at_once = 4096;  // of a thread
 constexpr std::size_t rays_at_once = 8;
 constexpr uint32_t rays_to_disc = 32;  // from a point to a light with a radius
 
-// A triangle's corner as an alpha test needs it. Every part of it changes evenly over the triangle.
+// A triangle's corner for alpha tests. Each member is interpolated linearly over the triangle.
 struct AlphaCorner {
   glm::vec2 uv;  // of the image
   float alpha;   // of material and vertex
@@ -58,7 +58,7 @@ void let_through_cut_out(const RTCFilterFunctionNArguments* hits) {
   }
 }
 
-// By the same sums as scene/instance.glsl.
+// The same arithmetic as scene/instance.glsl.
 glm::vec3 position_from(const glm::vec3& origin_ws, const pack::Instance& instance, const glm::vec3& p) {
   const auto& rows = instance.world_from_local;
   return {glm::dot(glm::vec3(rows[0]), p) + (rows[0].w - origin_ws.x),
@@ -66,15 +66,15 @@ glm::vec3 position_from(const glm::vec3& origin_ws, const pack::Instance& instan
           glm::dot(glm::vec3(rows[2]), p) + (rows[2].w - origin_ws.z)};
 }
 
-// Where rays of a picture are reckoned from: near its eye, so that what it sees is hardly rounded; the world's own
-// origin for most scenes.
+// The origin of Embree's scene: near the eye, so that coordinates are rounded little. In most scenes it is the world's
+// origin.
 constexpr float origin_step_m = 1024.0f;
 
 glm::vec3 origin_near(const glm::vec3& eye_ws) {
   return glm::round(eye_ws / origin_step_m) * origin_step_m;
 }
 
-// Half a step would do, but an eye that goes to and fro there would have the scene made anew each time.
+// Half a step would do, but then an eye that moves back and forth there would cause a rebuild each time.
 bool is_far_from(const glm::vec3& eye_ws, const glm::vec3& origin_ws) {
   return glm::any(glm::greaterThan(glm::abs(eye_ws - origin_ws), glm::vec3(0.75f * origin_step_m)));
 }
@@ -90,7 +90,7 @@ AlphaCorner alpha_corner(const pack::View& pack, const pack::Material& material,
   return corner;
 }
 
-// By material, those without a test together; seen from `origin_ws`.
+// Triangles by material, those without an alpha test together; relative to `origin_ws`.
 std::map<uint32_t, Casters> gather_casters(const World& world, const glm::vec3& origin_ws) {
   const pack::View& pack = world.pack();
   std::map<uint32_t, Casters> by_test;
@@ -123,7 +123,7 @@ class RayScene {
  public:
   RayScene(const World& world, const glm::vec3& origin_ws);
 
-  /// Whether it is still what an eye there sees.
+  /// Whether the scene is still valid for this eye.
   bool serves(const World& world, const glm::vec3& eye_ws) const {
     return instances_ == world.instances_version() && !is_far_from(eye_ws, origin_ws_);
   }
@@ -135,7 +135,7 @@ class RayScene {
   void answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const;
 
   Version instances_;                    // of the world, when this was built
-  glm::vec3 origin_ws_;                  // what everything is reckoned from
+  glm::vec3 origin_ws_;                  // origin of all coordinates here
   std::map<uint32_t, Casters> casters_;  // outlive the scene, which reads their corners
   std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
   std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
@@ -187,8 +187,7 @@ struct Seen {
   float gap_m;
 };
 
-// How far points may lie behind what the camera sees: they come from a depth of 32 bits, and their sums are floats
-// (README.md).
+// How far a point may lie behind its surface: it is computed in floats from a 32-bit depth (README.md).
 Seen seen_from(const glm::vec3& eye, const SurfacePoint& point) {
   const glm::vec3 position = eye + point.position, p = glm::abs(position);
   const float distance = glm::length(point.position);
@@ -196,7 +195,7 @@ Seen seen_from(const glm::vec3& eye, const SurfacePoint& point) {
   return {position, point.normal_ws, std::max(of_depth, 1e-6f * std::max(p.x, std::max(p.y, p.z)))};
 }
 
-// A way that is clear where the light is seen: from + t · way, t from `begin` to `end`.
+// A ray: from + t · way, t from `begin` to `end`. The light is visible if nothing blocks it.
 struct Sight {
   glm::vec3 from;
   glm::vec3 way;
@@ -204,11 +203,11 @@ struct Sight {
   float end;
 };
 
-// To the light's middle. Nothing where no ray is needed: the light does not reach the point, or shines on its back.
-// `light` stands at `light_position`, from the scene's origin as the point is.
+// The ray to the light's centre. Empty if none is needed: the light does not reach the point, or shines on its back.
+// `light_position` is relative to the scene's origin, like the point.
 std::optional<Sight> sight(const frame::FrameLight& light, const glm::vec3& light_position, float near_m,
                            const Seen& point) {
-  // The gap once more along the way: at the seam of two walls, a point of the one may lie behind the other.
+  // The same gap again along the ray: at the seam of two walls, a point of one may lie behind the other.
   const float gap = point.gap_m;
   const glm::vec3 from = point.position + gap * point.normal_ws;
   if (light.type == static_cast<uint32_t>(pack::LightType::directional)) {
@@ -233,7 +232,7 @@ glm::vec2 disc_point(uint32_t i, uint32_t count, float turn) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-// A sphere is seen as a disc across the way to its middle. Each point looks at other places of it.
+// A point sees a sphere as a disc perpendicular to the ray to its centre. Each point uses other places of the disc.
 class Disc {
  public:
   Disc(const Sight& to_middle, float radius_m, std::size_t point) : to_middle_(to_middle) {
@@ -257,7 +256,7 @@ class Disc {
   float turn_;
 };
 
-// Ways that are looked along together.
+// Rays that are traced together.
 struct Bundle {
   alignas(32) std::array<int, rays_at_once> valid{};
   RTCRay8 rays{};
@@ -275,7 +274,7 @@ struct Bundle {
     rays.time[i] = 0.0f, rays.mask[i] = ~0u, rays.id[i] = 0, rays.flags[i] = 0;
   }
 
-  // Counts what is lit, and empties itself.
+  // Counts clear rays, and empties the bundle.
   void look(RTCScene scene, std::span<uint8_t> lit) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -291,7 +290,7 @@ struct Bundle {
 void RayScene::answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const {
   const uint32_t rays = query.radius_m > 0.0f ? rays_to_disc : 1;
   const glm::vec3 eye = query.eye_ws - origin_ws_, light = query.light.position_ws - origin_ws_;
-  const auto lit = query.visibility;  // first how many rays of each point
+  const auto lit = query.visibility;  // holds the number of clear rays per point first
   Bundle bundle;
   for (std::size_t i = first; i < end; ++i) {
     lit[i] = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visibility by rays on the CPU (Embree): what shadow maps are measured against.
+// Visibility by rays on the CPU (Embree), the reference for shadow maps.
 #pragma once
 
 #include "frame/visibility_query.h"
@@ -7,10 +7,10 @@
 
 namespace chandelier::truth {
 
-/// Answers for the triangles of a world, whichever side they show, as shadow passes draw them; what an alpha test cuts
-/// out lets light through. `world` must outlive the answers. Each uses all cores, one at a time. The first one, and the
-/// first after an instance moved or from an eye a kilometre on, takes the time to build Embree's scene. Throws
-/// std::runtime_error, one line.
+/// Both sides of the world's triangles block light, as in shadow passes; holes of alpha tests let it through. `world`
+/// must outlive the result. Each query uses all cores; make one query at a time. The first query builds Embree's scene,
+/// and so does the first one after an instance moved or from an eye a kilometre away. Throws std::runtime_error, one
+/// line.
 VisibilitySource ray_traced_visibility(const World& world);
 
 }  // namespace chandelier::truth
