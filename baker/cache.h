@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps what was baked under the content that it was baked from (--cache). An entry is a pack of its own, read with as
-// little trust as any: a damaged or foreign one is a miss.
+// Keeps results of bakes, named by a hash of their inputs (--cache). An entry is a pack, and is checked as any pack is:
+// a damaged or foreign one is a miss.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace chandelier::baker {
 
-/// Collects all that a stage's result depends on. The build of the baker and of its libraries is part of every key.
+/// Hashes everything that a stage's result depends on. Every key contains the build of the baker and of its libraries.
 class CacheKey {
  public:
   explicit CacheKey(std::string stage);
@@ -55,9 +55,9 @@ struct CacheEntry {
 /// Any thread may call any function.
 class Cache {
  public:
-  /// Finds and keeps nothing.
+  /// A cache that is off: it finds and keeps nothing.
   Cache() = default;
-  /// Makes the folder if need be. Throws Error.
+  /// Makes the folder if it is missing. Throws Error.
   explicit Cache(const std::filesystem::path& folder);
 
   bool is_on() const { return !folder_.empty(); }
@@ -65,16 +65,16 @@ class Cache {
 
   std::unique_ptr<CacheEntry> load(const std::string& name);
 
-  /// Says what is wrong with an entry that was found, and makes it a miss.
+  /// Reports a fault of an entry that was found; the entry becomes a miss.
   void reject(const std::string& name, const std::string& fault);
 
   /// An entry that cannot be written is a warning. `sections`' bake_info and strings are kept too; its source is not.
   void store(const std::string& name, const pack::View& sections, const std::string& notes);
 
-  /// What went wrong, in the order of the entries' names.
+  /// Adds warnings for all faults, in the order of the entries' names.
   void warn(Warnings& warnings) const;
 
-  /// Of each entry that was asked for whether it was there.
+  /// For each requested entry, whether it was there.
   const std::map<std::string, bool>& loads() const { return loads_; }
 
  private:

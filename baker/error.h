@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the baker says that an input cannot be baked, or that it was baked with something left out.
+// Errors and warnings of the baker, and how their text is made printable.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,11 @@ struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// At most `most_bytes` of a UTF-8 text, cut between characters, with "..." where something is left out.
+/// At most `most_bytes` of a UTF-8 text, cut between characters, with "..." if something is left out.
 std::string shortened(const std::string& text, std::size_t most_bytes);
 
-/// As a message shows it: control characters, line separators and what is not UTF-8 as escapes, and not endlessly long.
+/// The text as a message shows it: control characters, line separators and invalid UTF-8 as escapes, and of limited
+/// length.
 std::string printable(const std::string& text);
 
 /// A number as short as it can be.
@@ -34,10 +35,10 @@ std::uint32_t fit_u32(std::uint64_t count, const char* what);
 /// Warnings, one line per kind and file however often they occur.
 class Warnings {
  public:
-  /// `name`: one of those that the warning is about, where it is not one of `where`.
+  /// `name`: the thing that the warning is about, if `where` does not name it.
   void add(const std::string& file, const std::string& where, const std::string& what, const std::string& name = "");
 
-  /// However often the same was said.
+  /// The number of warnings, counting each repetition.
   std::uint64_t count() const;
 
   /// `file: where (and 3 more): what`, or with names `file: where: what (A, B, C and 3 more)`, in the order of adding.

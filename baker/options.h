@@ -28,7 +28,7 @@ struct Options {
   bool verbose = false;
 };
 
-/// Returns nothing and sets `exit_code` where there is nothing to bake: --help or --version (0), or a usage error (2).
+/// Returns nothing and sets `exit_code` if there is nothing to bake: --help or --version (0), or a usage error (2).
 std::optional<Options> parse_options(int argc, char** argv, int& exit_code);
 
 }  // namespace chandelier::baker

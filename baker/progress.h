@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells someone who waits what the bake is doing, on stderr.
+// Progress of the bake on stderr.
 #pragma once
 
 #include <chrono>
@@ -17,11 +17,11 @@ class Progress {
   enum class Shown {
     nothing,
     slow_passes,  // a line after each pass that took longer than patience
-    all_passes,   // a line after each pass; passes that took next to nothing share one, told when another takes longer
-    rewritten,    // one line of a terminal, which is never left behind
+    all_passes,   // a line after each pass; very short passes share one line, printed before the next longer pass
+    rewritten,    // one line of a terminal, erased at the end
   };
 
-  /// Says nothing for the first `patience_s`, since nobody wonders yet.
+  /// Prints nothing for the first `patience_s` seconds.
   explicit Progress(Shown shown, double patience_s = 1, std::FILE* out = stderr);
   explicit Progress(bool terminal) : Progress(terminal ? Shown::rewritten : Shown::nothing) {}
   ~Progress();
@@ -30,17 +30,17 @@ class Progress {
 
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
-  /// A pass begins, and ends; Report::run() says so.
+  /// A pass begins or ends; called by Report::run().
   void begin(const std::string& pass) const;
   void end(const std::string& pass, double ms) const;
 
-  /// What the pass does now: "decoding 12 images".
+  /// Sets what the pass is doing: "decoding 12 images".
   void next(const std::string& what) const;
 
-  /// How far the pass is. Any thread may say so.
+  /// Sets how far the pass is. Any thread may call it.
   void advance(std::size_t done, std::size_t total) const;
 
-  /// All is done: takes the rewritten line away, or tells what is untold and the whole time.
+  /// The bake is done: erases the rewritten line, or prints the remaining passes and the total time.
   void clear() const;
 
  private:
@@ -58,13 +58,13 @@ class Progress {
   mutable std::string what_;
   mutable std::size_t done_ = 0, total_ = 0;
   mutable bool visible_ = false;
-  mutable std::string quick_passes_;  // that ended and are untold
+  mutable std::string quick_passes_;  // that have ended but are not printed yet
   mutable double quick_ms_ = 0;
   mutable double quick_ended_s_ = 0;
   mutable std::size_t passes_ended_ = 0;
   mutable double pass_began_s_ = 0;
   std::condition_variable_any stopped_;
-  std::jthread ticker_;  // at a terminal, so that the seconds run, and where all passes are told
+  std::jthread ticker_;  // updates the seconds at a terminal, and is used with all_passes
 };
 
 }  // namespace chandelier::baker

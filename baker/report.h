@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a bake did: each pass with its time and counts. `--json` prints it, and the benchmarks read that.
+// What a bake did: each pass with its time and counts. `--json` prints it; the benchmarks read that.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 namespace chandelier::baker {
 
-/// One pass. Counts are what it wants to tell, in its order: "triangles", "shells", "sah_cost", …
+/// One pass. It chooses its counts and their order: "triangles", "shells", "sah_cost", …
 struct PassReport {
   std::string name;
   double ms = 0;            // wall time

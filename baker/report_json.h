@@ -11,7 +11,7 @@
 
 namespace chandelier::baker {
 
-/// What a finished bake can say of itself.
+/// The results of a finished bake.
 struct Outcome {
   Report report;
   std::vector<std::string> warnings;

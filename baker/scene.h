@@ -71,15 +71,15 @@ struct SpecularGlossiness {
   bool operator==(const SpecularGlossiness&) const = default;
 };
 
-/// An image as its file has it, PNG, JPEG or WebP bytes; or one without bytes that is converted from others: as a
-/// colour it is the material's base colour and alpha, as data its roughness (G) and metallic (B).
+/// An image as PNG, JPEG or WebP bytes; or one without bytes that is converted from others. Used as a colour, that one
+/// is the material's base colour and alpha; used as data, its roughness (G) and metallic (B).
 struct EncodedImage {
   std::string name;
   std::string where;  // for messages: file and image
   std::vector<std::uint8_t> bytes;
   std::string file = {};  // the first part of `where`
   std::optional<SpecularGlossiness> converted_from = {};
-  bool damage_told = false;  // in a warning, which one is enough of
+  bool damage_told = false;  // a warning has named the damage; one is enough
 };
 
 struct Texture {
@@ -116,8 +116,8 @@ struct Material {
   std::string where;              // for messages: file and material
   float transmission_factor = 0;  // the part of the light that passes through
   TextureUse transmission_map;    // red multiplies it
-  std::optional<bool> shadow;     // whether its author wants one, where that is said
-  bool shadowless = false;        // throws none
+  std::optional<bool> shadow;     // whether its author wants a shadow, if the extras say so
+  bool shadowless = false;        // casts none
 };
 
 enum class LightType { point, spot, directional };
@@ -134,7 +134,7 @@ struct Light {
   float outer_cone_rad = 0.7854f;  // spot only
   std::string where;               // for messages: file and node
   std::uint32_t node = no_index;   // of Scene::nodes, where an animation moves it
-  std::optional<float> power_w;    // as its author gave it, where extras say so (light_extras.schema.json)
+  std::optional<float> power_w;    // from the author's extras (light_extras.schema.json)
   std::uint32_t priority = 128;    // 0 to 255
   bool dynamic = false;
   bool unclustered = false;
@@ -154,7 +154,7 @@ struct Camera {
   std::uint32_t node = no_index;  // of Scene::nodes, where an animation moves it
 };
 
-/// A node that moves, or that one hangs from. Parents come before their children.
+/// A node that moves, or that carries one that moves. Parents come before their children.
 struct Node {
   std::string name;
   std::uint32_t parent = no_index;

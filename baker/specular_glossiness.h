@@ -6,7 +6,7 @@
 
 namespace chandelier::baker {
 
-/// What any surface that is no metal reflects, as glTF has it.
+/// The reflectance of any surface that is not metal, in glTF.
 inline constexpr float dielectric = 0.04f;
 
 /// All linear. Roughness is 1 - glossiness.
@@ -15,11 +15,11 @@ struct MetallicColor {
   float metallic = 0;
 };
 
-/// The base colour and metallic that reflect as much as a diffuse and a specular colour do: exactly where these are
-/// grey or a metal's; else what is lost is the hue of a mirror that is no metal.
+/// The base colour and metallic that reflect as much as a diffuse and a specular colour. Exact for grey colours and for
+/// metals; otherwise the hue of a mirror that is not metal is lost.
 MetallicColor metallic_color(const glm::vec3& diffuse, const glm::vec3& specular);
 
-/// What reflects no more than any surface that is no metal: its metallic is 0 whatever its diffuse colour.
+/// Whether the surface reflects no more than a non-metal: its metallic is then 0, whatever its diffuse colour.
 bool is_dielectric(const glm::vec3& specular);
 
 }  // namespace chandelier::baker

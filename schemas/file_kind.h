@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a file is that is not what a program asked for, by its first bytes; and what to do with it.
+// Recognizes a file of the wrong kind by its first bytes, and tells what to do with it.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ enum class FileKind { unknown, pack, gltf, json, other };
 struct KnownFile {
   FileKind kind = FileKind::unknown;
   std::string name;    // "a Blender file"; empty where it is unknown
-  std::string advice;  // how to make a glTF of it; empty where that is nothing to expect
+  std::string advice;  // how to make a glTF from it; empty if that is not possible
 };
 KnownFile known_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// For one who asked for a pack: what is there instead, and how to get a pack.
+/// A message for a program that expected a pack: what the file is, and how to get a pack.
 std::string no_pack(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace chandelier::pack

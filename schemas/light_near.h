@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From where on a light's shadow map sees what throws shadows.
+// The near plane of a light's shadow map.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace chandelier::pack {
 
-/// Where nothing is nearer: near enough for what will move there, and depths of triangles that pass the light stay
-/// exact.
+/// The near plane if no caster is nearer: near enough for moving objects, and far enough for exact depths of triangles
+/// that pass the light.
 constexpr float most_shadow_near_m = 0.01f;
 /// What is nearer than this to a light may cast no shadow.
 constexpr float least_shadow_near_m = 1e-4f;

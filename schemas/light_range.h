@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a light ends that nobody gave a range: one rule for the baker and for who previews what it will make.
+// The range of a light without an authored one: one rule for the baker and for previews.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of a pack that one field alone cannot break.
+// The rules of a pack that concern more than one field.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules between fields of what moves.
+// The rules between fields of nodes, animations and skins.
 #pragma once
 
 #include <string>

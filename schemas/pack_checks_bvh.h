@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of the hierarchies over batches, instances and triangles that one field alone cannot break.
+// The rules between fields of the hierarchies over batches, instances and triangles.
 #pragma once
 
 #include <string>

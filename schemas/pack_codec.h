@@ -16,8 +16,8 @@ struct Encoded {
   std::vector<std::byte> bytes;  ///< Empty for Codec::raw: what is stored are the section's own bytes.
 };
 
-/// For each section of section_infos what the codec makes of it that is best for a sample; raw where that saves less
-/// than a twentieth. Same view, same bytes, whatever the number of threads; with 0 all cores work.
+/// Encodes each section of section_infos with the codec that is best on a sample of it; raw if that saves less than a
+/// twentieth. The same view gives the same bytes, whatever the number of threads; 0: all cores.
 std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads = 0);
 
 /// One section that is stored with a codec, and where its records go.
@@ -28,9 +28,9 @@ struct CodedSection {
   std::span<std::byte> records;  ///< Its size is a multiple of the stride; aligned for the records.
 };
 
-/// What is wrong with the codec or the sizes, which are not trusted; an empty string if decoding can be tried. Records
-/// of more than about max_decode_ratio times the stored bytes are refused: what a file can ask for is bounded by its
-/// size, if not to little. 10 MB may ask for 10 GB, as honest sections of zeros do.
+/// The fault of the codec or of the sizes, which are not trusted; an empty string if decoding can be tried. Refuses
+/// records of more than about max_decode_ratio times the stored bytes, so a file's size limits what it can ask for: 10
+/// MB may ask for 10 GB, as valid sections of zeros do.
 std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count);
 
 /// Decodes all; none is raw and all passed coded_size_fault(). Gives for each what is wrong with it or an empty string.

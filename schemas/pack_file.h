@@ -71,8 +71,9 @@ class Mapping {
   std::size_t size_ = 0;
 };
 
-/// A mapped file must not be written to as long as it is used: what is cut off of it ends whoever reads there, and what
-/// changes was not checked. One that is replaced by renaming stays. A copy takes its size in memory.
+/// A mapped file must not be written to while it is used. If another program shortens it, the system ends the reader by
+/// SIGBUS; changed bytes have not been checked. Replacing the file by renaming another over it is safe. A copy takes
+/// the file's size in memory.
 enum class Hold { mapped, copied };
 
 /// A pack in memory. Every offset, count, index, enum and float has been checked when the constructor returns.

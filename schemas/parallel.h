@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a loop's rounds in a few threads. Not oneTBB: the portable player has only the C and C++ libraries.
+// Runs a loop in a few threads. Not oneTBB: the portable player has only the C and C++ libraries.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void parallel_for(std::size_t count, std::size_t most_threads, const Body& body)
   const std::size_t wanted = std::min(count, most_threads ? most_threads : std::thread::hardware_concurrency());
   try {
     for (std::size_t i = 1; i < wanted; ++i) threads.emplace_back(work);
-  } catch (const std::system_error&) {  // no more threads to be had: those that there are do all
+  } catch (const std::system_error&) {  // no more threads available: the existing ones do all the work
   }
   work();
   threads.clear();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the origin of a scene is moved to that lies far from it: one rule for the baker and for who previews what it
-// will make.
+// The new origin of a scene that is far from its own: one rule for the baker and for previews.
 #pragma once
 
 #include <cmath>
@@ -11,8 +10,8 @@ namespace chandelier::pack {
 /// Up to here floats are at most 0.06 mm apart.
 constexpr double near_origin_m = 512.0;
 
-/// The middle of a box in whole metres, along each axis along which that is far and the box does not reach 0:
-/// coordinates become half as large at least. Else 0.
+/// On each axis the middle of the box in whole metres, if that is far from 0 and the box does not reach 0; coordinates
+/// then become half as large at least. Otherwise 0.
 inline glm::dvec3 scene_origin(const glm::dvec3& low, const glm::dvec3& high) {
   glm::dvec3 origin(0.0);
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that appears under its name only when it is whole.
+// A file that gets its name only when it is complete.
 #pragma once
 
 #include <cstddef>
@@ -40,7 +40,7 @@ class TemporaryFile {
 /// Writes all of `text`, as above.
 void write_text(const std::filesystem::path& path, std::string_view text);
 
-/// Deletes what writers that were killed left in `folder`. Those that still write keep theirs: each holds a lock on it.
+/// Deletes files in `folder` whose writers were killed. Writers that still run hold a lock on theirs, so those stay.
 void remove_stale_files(const std::filesystem::path& folder);
 
 }  // namespace chandelier::pack

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What throws a shadow: one rule for the baker, shadow maps, rays and predictions.
+// What casts a shadow: one rule for the baker, shadow maps, rays and predictions.
 #pragma once
 
 #include "pack_schema.h"
 
 namespace chandelier::pack {
 
-/// Whether a batch in its place throws a shadow: neither its instance nor its material is without one. `pack`: a View,
-/// or Contents.
+/// Whether a batch instance casts a shadow: neither its instance nor its material is shadowless. `pack`: a View, or
+/// Contents.
 template <typename Pack>
 bool throws_shadow(const Pack& pack, const BatchInstance& placed) {
   return pack.instances[placed.instance].shadowless == 0 &&

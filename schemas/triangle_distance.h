@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a triangle is: one rule for the baker and for lights that move later.
+// The distance of a triangle: one rule for the baker and for lights that move later.
 #pragma once
 
 #include <algorithm>

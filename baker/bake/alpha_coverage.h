@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps what is seen of an alpha-tested image as large on every mip level as on the first.
+// Keeps the visible area of an alpha-tested image the same on every mip level.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@ namespace chandelier::baker {
 /// Share of the texels of an RGBA8 image whose alpha is at least `cutoff`.
 double alpha_coverage(const std::vector<std::uint8_t>& rgba, float cutoff);
 
-/// `alphas` scaled so that as near as can be `coverage` of them reach `cutoff`, which is above 0 and at most 1; in
-/// steps of 1/255. Equal ones stay equal, so that where many are equal coverage is missed by up to their number.
-/// Castaño 2010, Computing Alpha Mipmaps; but exact, where that searches for the scale.
+/// `alphas` scaled so that the share that reaches `cutoff` (above 0, at most 1) is as near to `coverage` as possible,
+/// in steps of 1/255. Equal alphas stay equal, so where many are equal, coverage is missed by up to their number.
+/// Castaño 2010, Computing Alpha Mipmaps, but with an exact scale in place of a search.
 std::vector<std::uint8_t> with_coverage(const std::vector<float>& alphas, float cutoff, double coverage);
 
 }  // namespace chandelier::baker

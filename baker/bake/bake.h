@@ -17,17 +17,17 @@ namespace chandelier::baker {
 struct BakeSettings {
   std::uint32_t batch_triangles = 100;                          // most in a batch; a multiple of 4, up to 512
   float range_threshold_lx = pack::default_range_threshold_lx;  // where a light without a range of its own ends
-  float position_error_m = 0.0005f;  // most that a vertex may be moved in the world; 0 keeps floats
+  float position_error_m = 0.0005f;  // largest distance that a vertex may move in the world; 0 keeps floats
   int normal_bits = 10;              // of each of a normal's and a tangent's two numbers, 8 to 16
   int uv_bits = 14;                  // of a texture coordinate after the point, up to 20; 0 keeps floats
   VoxelSettings voxels;
   ImageSettings images;
   float smooth_angle_deg = 0;  // missing normals: neighbours within this are smoothed; 0: all flat
-  bool glass_shadows = false;  // what light passes through throws a shadow all the same
+  bool glass_shadows = false;  // glass casts shadows too
 };
 
-/// Runs all passes, and notes each in `report`; takes from `cache`, where there is one, what it keeps. Same scene and
-/// settings, same contents, whatever the number of threads. They have yet to be checked. Throws Error.
+/// Runs all passes and notes each in `report`; uses the entries of `cache`, if there is one. The same scene and
+/// settings give the same contents, whatever the number of threads. Call check() on them afterwards. Throws Error.
 pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
                     Warnings& warnings, Cache* cache = nullptr);
 

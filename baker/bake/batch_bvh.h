@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hierarchies over what stands still in the world: batch instances, and instances.
+// Passes: hierarchies over static batch instances and static instances.
 #pragma once
 
 #include "../report.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normal cone of a batch: from which eyes all of its triangles show their backs.
+// The normal cone of a batch: the eyes from which all of its triangles are seen from the back.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -14,8 +14,7 @@ struct ClaimedSize {
   std::uint64_t texels() const { return width * height; }
 };
 
-/// Less than a byte for 2048 texels, which no format comes near: a damaged file so small claims a size and has no
-/// picture.
+/// Less than a byte for 2048 texels, far less than any format needs: the size in such a damaged file is not plausible.
 inline bool has_no_picture(const ClaimedSize& size, std::size_t file_bytes) {
   return size.texels() / 2048 > file_bytes;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles cut at the faces of a grid's cells (Sutherland and Hodgman 1974), so that every point of one is in one
+// Cuts triangles at the faces of a grid's cells (Sutherland and Hodgman 1974), so that every point of a piece is in one
 // cell.
 #pragma once
 

@@ -13,8 +13,8 @@ namespace chandelier::baker {
 /// Throws Error above 16384 texels, or below 1.
 void check_image_size(std::int64_t width, std::int64_t height, const std::string& where);
 
-/// An image, and what is wrong with its file where that left something to see, as it does in viewers: part of the
-/// texels may then be made up.
+/// An image, and the damage of its file if something is still visible, as in viewers. Part of the texels may then be
+/// filled in.
 struct DecodedTexels {
   Texels texels;
   std::string damage;
@@ -23,7 +23,7 @@ struct DecodedTexels {
 /// Throws Error for what is neither PNG, JPEG nor WebP, cannot be decoded or is too large.
 DecodedTexels decode_image(const EncodedImage& image);
 
-/// What decodes, as it lies on the disk: equal ones decode alike. Empty where it is missing.
+/// The file of the decoder module, byte for byte: equal modules decode alike. Empty if it is missing.
 const std::string& decoder_code();
 
 /// Of a file of any of the three formats.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What chandelier-bake and its module for images, chandelier_images.so, say to each other. The module alone knows
+// The interface between chandelier-bake and its module for images, chandelier_images.so. Only the module uses
 // OpenImageIO, whose 250 libraries take longer to load than a small bake.
 #pragma once
 
@@ -20,7 +20,7 @@ struct DecodedImage {
   std::string damage;                // what the decoder noticed and went on after, likewise
 };
 
-/// Of a whole file. There are no values where a side is not 1 to `max_size` or channels are not 1 to 4.
+/// Decodes a whole file. There are no values if a side is not 1 to `max_size` or channels are not 1 to 4.
 using DecodeFunction = DecodedImage (*)(const std::vector<std::uint8_t>& file, ImageFormat format,
                                         std::int64_t max_size);
 

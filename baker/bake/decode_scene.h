@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels of a scene's images, of those too that are converted from others.
+// Texels of a scene's images, including those that are converted from others.
 #pragma once
 
 #include <optional>
@@ -37,12 +37,11 @@ struct SceneTexels {
   }
 };
 
-/// Throws Error where the image, or one that it is converted from, cannot be decoded, or where two of those have shapes
-/// so different that an image in the larger width and height would be far larger than both.
+/// Throws Error if the image, or one that it is converted from, cannot be decoded; or if the two sources differ so much
+/// in shape that an image of the larger width and height would be far larger than both.
 SceneTexels decode_image(const Scene& scene, std::uint32_t image);
 
-/// Says which of an image's sources are damaged, once each, given what each has. Throws Error instead where that is
-/// `strict`.
+/// Warns of each damaged source of an image, once; `strict` throws Error instead.
 void tell_damage(Scene& scene, std::uint32_t image, const std::vector<std::string>& damage, bool strict,
                  Warnings& warnings);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which elements of an array are equal: the one hash table of the geometry passes, on all cores.
+// Finds equal elements of an array: the hash table of the geometry passes, on all cores.
 #pragma once
 
 #include <tbb/parallel_for.h>

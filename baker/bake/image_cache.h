@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is made of one encoded image, kept in a cache.
+// The cache entries of images: the results of one encoded image.
 #pragma once
 
 #include <cstdint>
@@ -30,11 +30,11 @@ struct MadeImages {
   std::string error;
 };
 
-/// The entry of an image of the scene, and of what is asked of it, in this order.
+/// The name of the entry of an image with these requests, in this order.
 std::string image_entry(const Scene& scene, std::uint32_t image, const std::vector<ImageRequest>& requests,
                         const ImageSettings& settings);
 
-/// False where the cache has no such entry, or none of so many files for so many requests.
+/// False if the cache has no such entry, or if its number of files or requests differs.
 bool load_images(Cache& cache, const std::string& entry, std::size_t source_count, std::size_t request_count,
                  MadeImages& made);
 void store_images(Cache& cache, const std::string& entry, const MadeImages& made);

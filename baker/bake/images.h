@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: PNG, JPEG and WebP bytes into what GPUs sample, with all mip levels.
+// Pass: decodes PNG, JPEG and WebP into formats that GPUs sample, with all mip levels.
 #pragma once
 
 #include <compare>

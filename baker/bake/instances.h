@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: each batch in each place, with its box in the world.
+// Pass: places each batch in each instance, with its box in the world.
 #pragma once
 
 #include "../scene.h"

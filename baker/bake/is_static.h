@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which batch instances the structures over what stands still are made of.
+// Which batch instances are static, and so part of the static hierarchies and voxels.
 #pragma once
 
 #include "pack_schema.h"

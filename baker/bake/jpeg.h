@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks at a JPEG before the decoder does.
+// Checks a JPEG before it is decoded.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands around a light: rays against a pack's static triangles, and whether any lies in its reach.
+// Finds what is around a light: rays against a pack's static triangles, and whether any triangle is within its range.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,8 +9,8 @@
 
 namespace chandelier::baker {
 
-/// What a ray meets. What throws no shadow does not count, nor do masked materials: what their texture leaves of them
-/// is not known here.
+/// What a ray hits. Triangles that cast no shadow do not count, nor do masked materials, since textures are not read
+/// here.
 struct RayHit {
   double distance_m = INFINITY;  // of the first triangle
   bool closed_back = false;      // it is the back of a closed shell
@@ -32,8 +32,8 @@ std::vector<std::uint32_t> moving_batch_instances(const pack::Contents& pack);
 double nearest_caster_m(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, const glm::dvec3& at,
                         double most_m);
 
-/// Whether a triangle lies within a point or spot light's range and, maybe elsewhere, within its cone. So "no" is
-/// certain. Triangles that move count where they rest.
+/// Whether a triangle has points within a point or spot light's range and points, maybe others, within its cone. So
+/// false is certain. Moving triangles count at rest.
 bool reaches_anything(const pack::Contents& pack, const pack::Light& light);
 
 }  // namespace chandelier::baker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mip levels of an image, by what its texels mean.
+// Mip levels of an image, averaged by the meaning of its texels.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: normals, where the file has none.
+// Pass: makes normals where the file has none.
 #pragma once
 
 #include "../scene.h"

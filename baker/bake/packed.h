@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes between the geometry passes: vertices as the pack has them, on a grid, but not yet welded or in batches.
+// Meshes between the geometry passes: vertices in the pack's format, on a grid, but not yet welded or in batches.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks at a PNG before the decoder does.
+// Checks and repairs a PNG before it is decoded.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 namespace chandelier::baker {
 
 /// The chunks of a PNG that its texels need: glTF ignores colour profiles and gamma, and the decoder would print
-/// warnings about them. What viewers show although it is damaged is made whole, and `damage` then says what was wrong:
-/// chunks whose checksum is wrong, a file that is cut short, data that ends early or cannot be inflated from some row
-/// on (which and those below repeat the last good one). Throws Error, beginning with `where`, where that is no picture.
+/// warnings about them. Damage that viewers tolerate is repaired, and `damage` then names it: a chunk with a wrong
+/// checksum, a file that is cut short, data that ends early or cannot be inflated from some row on (that row and those
+/// below repeat the last good one). Throws Error, beginning with `where`, if no picture is left.
 std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where,
                                         std::string& damage);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: vertices onto grids, so that they compress well and nearly equal ones become equal, by a stated error.
+// Pass: rounds vertices to grids, so that they compress well and nearly equal ones become equal, within a stated error.
 #pragma once
 
 #include "packed.h"

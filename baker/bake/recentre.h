@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves a scene that lies far from its origin to where floats are fine.
+// Pass: moves a scene that is far from its origin to where floats are precise.
 #pragma once
 
 #include "../error.h"
@@ -8,9 +8,9 @@
 
 namespace chandelier::baker {
 
-/// Sets scene.origin_m, and has the world begin there: instances, lights, cameras and what moves. Meshes whose vertices
-/// lie far from their own origin get another one too. A scene near its origin stays bit for bit as it is. Warns of what
-/// the files' floats have rounded already.
+/// Sets scene.origin_m and makes it the origin of the world: of instances, lights, cameras, nodes and animations.
+/// Meshes whose vertices are far from their own origin get a new one too. A scene near its origin stays the same bit
+/// for bit. Warns of positions that the files' floats have rounded.
 void recentre(Scene& scene, PassReport& pass, Warnings& warnings);
 
 }  // namespace chandelier::baker

@@ -11,11 +11,11 @@ struct ShellCounts {
   std::uint64_t closed_triangles = 0;
 };
 
-/// Sets PackedPrimitive::closed. A shell is what hangs together by edges, over all primitives of the mesh; it is closed
-/// where every edge has exactly two triangles that run along it in opposite directions, oriented outwards where its
-/// volume is positive. A shell with a masked triangle, or one that throws no shadow, counts as open: light gets inside.
-/// So does a mesh that a skin bends (`rigid` false), whose places come apart. Double-sided materials make no
-/// difference: what closes is the geometry, and a shell's back hides the same light as its front.
+/// Sets PackedPrimitive::closed. A shell is a set of triangles connected by edges, over all primitives of the mesh. It
+/// is closed if every edge has exactly two triangles that run along it in opposite directions, and it is oriented
+/// outwards if its volume is positive. A shell counts as open if a triangle of it is masked or casts no shadow, since
+/// light gets inside, or if a skin bends it (`rigid` false), since its vertices come apart. Double-sided materials make
+/// no difference: a shell's back hides the same light as its front.
 ShellCounts find_shells(PackedMesh& mesh, const std::vector<Material>& materials, bool rigid);
 
 }  // namespace chandelier::baker

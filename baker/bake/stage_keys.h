@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the stages that a cache keeps depend on.
+// The cache keys of stages: hashes of everything that they depend on.
 #pragma once
 
 #include "../cache.h"

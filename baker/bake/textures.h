@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: materials and their textures; says which images are needed, and as what.
+// Pass: materials and their textures; returns which images are needed, and for which use.
 #pragma once
 
 #include "../scene.h"
@@ -10,7 +10,7 @@
 namespace chandelier::baker {
 
 /// Fills materials and, with `textures`, textures, whose image is the number of a request that is returned, for
-/// make_images. Without, what a texture colours has its factor alone, and what a texture lets glow does not.
+/// make_images. Without textures, factors alone remain, and a material with an emissive texture does not glow.
 std::vector<ImageRequest> make_materials(const Scene& scene, bool textures, Strings& strings, pack::Contents& pack);
 
 }  // namespace chandelier::baker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: the static triangles into the cells of a grid, for culling along lines of cells (voxel paper §4).
+// Pass: sorts the static triangles into the cells of a grid, for culling along lines of cells (voxel paper §4).
 #pragma once
 
 #include <array>

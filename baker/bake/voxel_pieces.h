@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What voxel bins are put together from: the triangles of one batch instance in one cell.
+// The pieces of voxel bins: the triangles of one batch instance in one cell.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accessors of any component type, stride and sparseness.
+// Reads accessors of any component type and stride, sparse ones too.
 #pragma once
 
 #include <atomic>

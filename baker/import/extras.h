@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an author adds in `extras.chandelier`: to a light (light_extras.schema.json), or to a mesh's node or a material
+// Reads the author's `extras.chandelier` of a light (light_extras.schema.json), or of a mesh's node or a material
 // (shadow_extras.schema.json).
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace chandelier::baker {
 
-/// One `extras.chandelier` and where it is; each member function reads one of its keys, where it is there. Throws Error
-/// where its value breaks a rule.
+/// One `extras.chandelier` and its place in the file. Each member function reads one key, if it is there, and throws
+/// Error if its value breaks a rule.
 struct Extras {
   const Json& json;
   std::string where;
@@ -26,15 +26,15 @@ struct Extras {
   [[noreturn]] void bad(const char* key, const char* what, const Json& value) const;
 };
 
-/// Of `owner`, which is `here` in the file. A key that is not `known` may be a typing error: that is said, as it
-/// changes nothing; with none known nothing is said. Throws Error where it is no object.
+/// The extras of `owner`, whose place in the file is `here`. Warns of a key that is not in `known`, which may be a
+/// typing error; no warnings if `known` is empty. Throws Error if it is not an object.
 std::optional<Extras> extras_of(const Gltf& gltf, const Json& owner, const std::string& here,
                                 std::span<const std::string_view> known, Warnings& warnings);
 
-/// Whether the node's author wants its own mesh to throw no shadow. Children are not asked about. Throws Error.
+/// Whether the node's author wants its own mesh to cast no shadow. Children are not affected. Throws Error.
 bool is_shadowless(const Gltf& gltf, std::size_t node, Warnings& warnings);
 
-/// Whether the material's author wants a shadow of it, where that is said. Throws Error.
+/// Whether the material's author wants it to cast a shadow, if the extras say so. Throws Error.
 std::optional<bool> shadow_of_material(const Gltf& gltf, std::size_t material, Warnings& warnings);
 
 }  // namespace chandelier::baker

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files and URIs. Large files are mapped, not read: their bytes are looked at where they lie in the page cache. Who
-// cuts a file short while it is mapped ends the bake by SIGBUS.
+// Files and URIs. Large files are mapped, not copied. If another program shortens a mapped file, the bake ends by
+// SIGBUS.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace chandelier::baker {
 
-/// Bytes and what keeps them.
+/// Bytes and their owner.
 struct Bytes {
   std::span<const std::uint8_t> bytes;
   std::shared_ptr<const void> owner;
@@ -30,8 +30,8 @@ struct UriTarget {
   bool backslashes = false;  // the file was found with / in their place
 };
 
-/// A file is looked for under the name that the URI stands for, under its own text, and with / for each backslash, as
-/// programs on Windows write them. Throws Error where the URI is no relative reference, or its data is not base64.
+/// The file is searched for under the decoded URI, under its literal text, and with / for each backslash, as programs
+/// on Windows write it. Throws Error if the URI is not a relative reference, or its data is not base64.
 UriTarget resolve_uri(const std::filesystem::path& folder, const std::string& uri, const std::string& where);
 
 }  // namespace chandelier::baker

@@ -10,7 +10,7 @@
 
 namespace chandelier::baker {
 
-/// What the geometry of a file comes to. A few bytes can stand for much: accessors without data are all zeros, and many
+/// The total size of a file's geometry. A few bytes can ask for much: accessors without data are all zeros, and many
 /// primitives can share one.
 struct GeometrySize {
   std::uint64_t bytes = 0;    // of vertices and indices in memory
@@ -23,8 +23,8 @@ struct GeometrySize {
 void add_size(const Gltf& gltf, std::size_t mesh, std::size_t primitive, std::span<const double> morph_weights,
               GeometrySize& total);
 
-/// A primitive's triangles, or nothing where it has none (points, lines, no positions); what was left out or mended;
-/// what is wrong with it. Primitives are read side by side, so all is kept until it can be told in order.
+/// A primitive's triangles, or nothing if it has none (points, lines, no positions); its warnings; its error.
+/// Primitives are read in parallel, so messages are kept and printed later in the file's order.
 struct ReadPrimitive {
   std::optional<Primitive> primitive;
   std::vector<std::string> warnings;

@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 struct Buffer {
   Bytes data;
   bool present = false;
-  std::string error;  // why it cannot be had, told where something reads it
+  std::string error;  // why it cannot be read; thrown when something reads it
 };
 
 struct Gltf {
@@ -56,7 +56,7 @@ bool is_accessor_type(const std::string& type);
 /// that has the URI. Throws Error.
 Bytes read_uri(Gltf& gltf, const std::string& uri, const std::string& here, Warnings& warnings);
 
-/// Says which buffers could not be had. Whatever needed them has failed before.
+/// Warns of buffers that could not be read. If the scene needs one, the import has failed before.
 void warn_of_buffers(const Gltf& gltf, Warnings& warnings);
 
 /// Whether the file says where the bytes of a buffer view are.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of check_gltf that have files of their own. Each checks one entry of a section; all throw Error.
+// Parts of check_gltf in other files. Each checks one entry of a section; all throw Error.
 #pragma once
 
 #include "json_object.h"

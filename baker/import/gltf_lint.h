@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Breaches of glTF 2.0 that do the bake no harm, because nothing that it makes depends on them: each is a warning.
+// Warnings for breaches of glTF 2.0 that do not affect the bake.
 #pragma once
 
 #include "json_object.h"
 
 namespace chandelier::baker {
 
-/// Says what a checked glTF does against the specification.
+/// Warns of everything in a checked glTF that breaks the specification.
 void lint_gltf(const Json& json, const std::string& file, Warnings& warnings);
 
-/// What the two halves of it share.
+/// Shared by both files of the lint.
 struct Lint {
   const Json& json;
   const std::string& file;
@@ -31,7 +31,7 @@ std::uint64_t whole(const Json& object, const char* key, std::uint64_t otherwise
 
 void lint_meshes(const Lint& lint);
 
-/// Keys that glTF does not define, which nothing reads: typing errors, most likely.
+/// Warns of keys that glTF does not define and nothing reads, most likely typing errors.
 void lint_keys(const Lint& lint);
 
 }  // namespace chandelier::baker

@@ -13,7 +13,7 @@ struct ImportSettings {
   std::string scene;  // name or number of the glTF's scene, where it has several; empty: the one that it shows first
 };
 
-/// What an import can say of itself.
+/// Counts of an import.
 struct ImportCounts {
   bool has_scene = false;  // the file has the scene that was asked for
   std::uint64_t hidden_nodes = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXT_mesh_gpu_instancing: one node, many places.
+// EXT_mesh_gpu_instancing: one node with many transforms.
 #pragma once
 
 #include <glm/glm.hpp>

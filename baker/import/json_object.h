@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A JSON object and where it is: each member function checks one of its keys, and fails with the place and the value.
+// A JSON object and its place in the file. Each member function checks one key; errors name the place and the value.
 #pragma once
 
 #include <optional>

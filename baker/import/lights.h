@@ -10,8 +10,8 @@
 
 namespace chandelier::baker {
 
-/// Appends the node's light to the scene, where it has one. `seen`: the file's lights that other nodes had already, of
-/// which nothing is said again. Throws Error.
+/// Appends the node's light to the scene, if it has one. `seen`: lights that other nodes have shown already; their
+/// warnings are not repeated. Throws Error.
 void add_light(const Gltf& gltf, const PlacedNode& placed, std::set<std::size_t>& seen, Scene& scene,
                Warnings& warnings);
 

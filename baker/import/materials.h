@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF materials, textures and images: each is taken over when something drawn uses it first.
+// glTF materials, textures and images; each is imported when something drawn first uses it.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ class Materials {
   /// The scene's material for a glTF material, or for none (-1): glTF's default. Throws Error.
   std::uint32_t use(int material);
 
-  /// Says what had to be left out of the materials used.
+  /// Warns of what was left out of the materials used.
   void warn() const;
 
   /// Materials of specular-glossiness among those used.

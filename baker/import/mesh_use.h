@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which meshes the scene shows, and in which shapes.
+// The meshes that the scene shows, and their shapes (morph weights, poses).
 #pragma once
 
 #include <compare>

@@ -6,8 +6,8 @@
 
 namespace chandelier::baker {
 
-/// Fills `decoded_views`, side by side. What cannot be decoded has an error, told where something reads it. Throws
-/// Error where all views together would need more than 16 GiB.
+/// Fills `decoded_views`, in parallel. A view that cannot be decoded holds an error, which is thrown when something
+/// reads it. Throws Error if all views together need more than 16 GiB.
 void decode_meshopt_views(Gltf& gltf);
 
 }  // namespace chandelier::baker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Morph targets, as the file's own weights have them.
+// Applies morph targets with the file's own weights.
 #pragma once
 
 #include <map>

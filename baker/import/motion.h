@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What moves: animated nodes, joints, and what hangs from them.
+// Animated nodes, joints, and everything below them.
 #pragma once
 
 #include "nodes.h"

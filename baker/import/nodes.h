@@ -32,8 +32,8 @@ std::string name_of(const tinygltf::Node& node, const std::string& own);
 /// Throws Error where a float cannot hold the transform.
 void check_place(const glm::dmat4& world_from_local, const std::string& where);
 
-/// Whether the transform squashes space flat, so that normals and winding have no meaning, or scales an axis by less
-/// than 1e-9 or more than 1e9, so that who draws it in floats would find it flat or infinite.
+/// Whether the transform flattens space, so that normals and winding have no meaning, or scales an axis by less than
+/// 1e-9 or more than 1e9, so that it would be flat or infinite in floats.
 bool is_degenerate(const glm::dmat4& transform);
 
 }  // namespace chandelier::baker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Skins that nothing moves: their meshes as the joints have them in the file.
+// Skins that nothing moves: their meshes in the pose of the file's joints.
 #pragma once
 
 #include "../scene.h"

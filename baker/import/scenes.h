@@ -14,8 +14,9 @@ struct ChosenScene {
   std::size_t left_out = 0;           // how many others there are
 };
 
-/// The scene whose name or number is `asked`; else, and with nothing asked, the default one, or the first where none is
-/// named. Says which others a default leaves out. Throws Error where a file of several has not what was asked for.
+/// The scene whose name or number is `asked`. If `asked` is empty, or a file with one scene does not have it, the
+/// default scene, or the first one. Warns of the scenes that a default leaves out. Throws Error if a file with several
+/// scenes does not have `asked`.
 ChosenScene choose_scene(const Gltf& gltf, const std::string& asked, Warnings& warnings);
 
 }  // namespace chandelier::baker

@@ -75,7 +75,7 @@ std::optional<FileCamera> camera_from_numbers(std::string_view text) {
     at = after;
   }
   const glm::dvec3 eye_m(numbers[0], numbers[1], numbers[2]);
-  const glm::dvec3 from_m = glm::round(eye_m / fine_m) * fine_m;  // seen from there, floats are fine
+  const glm::dvec3 from_m = glm::round(eye_m / fine_m) * fine_m;  // relative to it, floats are precise
   const glm::vec3 eye(eye_m - from_m), target(glm::dvec3(numbers[3], numbers[4], numbers[5]) - from_m);
   const float distance = glm::distance(eye, target);
   const auto fov_deg = static_cast<float>(numbers[6]);
@@ -86,7 +86,7 @@ std::optional<FileCamera> camera_from_numbers(std::string_view text) {
 }
 
 std::string camera_numbers(const pack::View& pack, const Camera& camera) {
-  // As fine as floats tell in the pack's own world, wherever that lies in the file's.
+  // As precise as floats are in the pack's world, wherever that lies in the file's coordinates.
   const glm::vec3 far = glm::abs(camera.eye_ws);
   const double size = std::max({double{far.x}, double{far.y}, double{far.z}, 1.0});
   const double finest = std::pow(10.0, std::floor(std::log10(size)) - 5.0);

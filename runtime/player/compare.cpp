@@ -23,7 +23,7 @@ namespace chandelier::player {
 namespace {
 
 constexpr uint32_t frames_unless_asked = 5;
-constexpr uint32_t frames_beside_truth = 1;  // which takes seconds for each, and whose time tells nothing
+constexpr uint32_t frames_beside_truth = 1;  // truth takes seconds per frame, and its time is not of interest
 
 struct Side {
   NamedRecipe named;
@@ -32,8 +32,8 @@ struct Side {
   Picture picture;
 };
 
-// Where the machine slows down for a while, both sides get their share of it. What keeps a budget depends on the
-// exposure: b's is planned once a's is known.
+// Both sides draw in turns, so a slow moment of the machine affects both. What meets a budget depends on the exposure,
+// so B is planned once A's exposure is known.
 void draw_in_turns(Renderer& renderer, const pack::File& pack, const World& world, const Budget& budget,
                    uint32_t frames, Side& a, Side& b) {
   Predictor predictor(world);

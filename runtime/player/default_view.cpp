@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views are tried with a coarse grid of rays, and judged by how many of them end on a surface that a light reaches.
+// Views are tested with a coarse grid of rays, and judged by the number of rays that end on a lit surface.
 #include "player/default_view.h"
 
 #include <algorithm>
@@ -15,9 +15,9 @@ namespace chandelier::player {
 namespace {
 
 constexpr uint32_t columns = 16, rows = 9;
-constexpr float grid_aspect = 16.0f / 9.0f;  // whatever the picture's: another size shall not be another view
-constexpr size_t most_lights = 512;          // that are asked, evenly from all
-constexpr size_t most_shadow_rays = 8;       // for a place, to what would be its brightest lights
+constexpr float grid_aspect = 16.0f / 9.0f;  // independent of the picture's, so that the size does not change the view
+constexpr size_t most_lights = 512;          // that are tested, evenly chosen
+constexpr size_t most_shadow_rays = 8;       // per place, to the lights that would be brightest there
 constexpr float enough = 0.1f;               // of the surfaces in view are lit
 
 constexpr size_t places = 4;  // to stand at, far from each other
@@ -50,13 +50,13 @@ class Viewer {
   struct Seen {
     uint32_t surfaces = 0;  // that a light could change
     uint32_t lit = 0;       // of them
-    float reach_m = 0.0f;   // sum of how far the lit ones are: a wall before the eye is no view
+    float reach_m = 0.0f;   // sum of the distances of the lit ones, so that a wall in front of the eye does not win
   };
   Seen see(const Camera& camera) const;
 
-  /// Of all that a light could change and that does not glow itself.
+  /// A box around all surfaces that a light could change and that do not glow.
   Box unglowing() const;
-  /// Cameras that stand near lights and look past them, those that step back farthest first.
+  /// Cameras near lights that look past them, sorted by how far they could step back.
   std::vector<Camera> inside() const;
 
  private:
@@ -127,7 +127,7 @@ float Viewer::way_ahead_m(const glm::vec3& from_ws, const glm::vec3& way, float 
   return hit ? hit->distance_m : most_m;
 }
 
-// The one nearest to their middle, then always the one farthest from those chosen.
+// First the place nearest to their centre, then always the one farthest from those chosen.
 std::vector<const pack::Light*> Viewer::scattered_lights() const {
   std::vector<const pack::Light*> placed;
   glm::dvec3 sum(0.0);
@@ -153,7 +153,7 @@ std::vector<const pack::Light*> Viewer::scattered_lights() const {
   return chosen;
 }
 
-// The room between floor and ceiling that a light is in or, where that is but its bulb or shade, the one below.
+// The room between floor and ceiling that a light is in; if that is only its bulb or shade, the room below.
 struct Room {
   float floor_y;
   float height_m;
@@ -180,7 +180,7 @@ std::optional<Room> room_of(const rays::PackRays& rays, const glm::vec3& light_w
   return *room;
 }
 
-// Steps back from below the light as far as that goes, and looks to where it came from: past it to the other side.
+// Steps back from below the light as far as possible, and looks back past the light to the other side.
 void Viewer::stand_near(const pack::Light& light, std::vector<Stand>& stands) const {
   const auto room = room_of(rays_, light.position_ws);
   const float eye_m = room ? std::min(eye_height_m, eye_share * room->height_m) : 0.0f;

@@ -85,7 +85,7 @@ void write_exr([[maybe_unused]] const fs::path& path, [[maybe_unused]] const Pic
   OIIO::Filesystem::IOVecOutput memory(bytes);
   OIIO::ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height), 3, OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "");  // else the time of writing: the same picture is to be the same bytes
+  spec.attribute("DateTime", "");  // the default is the time of writing, but the same picture must give the same bytes
   const auto output = OIIO::ImageOutput::create("memory.exr", &memory);
   if (!output || !output->open("memory.exr", spec) || !output->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) ||
       !output->close())
@@ -157,7 +157,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
   draft.descriptor = ::open(draft.path.c_str(), O_WRONLY | O_CLOEXEC | (draft.kept ? 0 : O_CREAT | O_EXCL), 0666);
   if (draft.descriptor < 0) {
     const int error = errno;
-    draft.kept = true;  // nothing was made, and what is there is not ours
+    draft.kept = true;  // nothing was created, and the file there is not ours
     throw cannot_write(path, error);
   }
   if (!write_all(draft.descriptor, bytes)) throw cannot_write(path, errno);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the command line of chandelier-play means: options, checked against each other.
+// Turns the parsed command line of chandelier-play into options, checked against each other.
 #include "player/options.h"
 
 #include <fmt/format.h>
@@ -74,7 +74,7 @@ void read_camera(const std::string& text, Options& options) {
         text));
 }
 
-// What is typed has been checked against the setting's answers or limits.
+// The text has been checked against the setting's answers or limits.
 template <typename Value>
 void read_setting(const Setting& setting, const std::string& text, Value& value) {
   if constexpr (std::is_enum_v<Value>) {
@@ -112,7 +112,7 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
   return {preset_name, recipe};
 }
 
-// A side of a comparison. Truth stays truth: how shadow maps are to be read is said to the other side.
+// A side of a comparison. Filter and deliver do not apply to truth, only to the other side.
 NamedRecipe make_side(const std::string& preset_name, Typed typed) {
   const NamedRecipe preset = make_recipe(preset_name, Typed{.answers = std::vector<std::string>(typed.answers.size())});
   for (std::size_t i = 0; i < typed.answers.size(); ++i)

@@ -54,7 +54,7 @@ double rmse_shown(const Picture& a, const Picture& b) {
   return std::sqrt(sum / (0.75 * static_cast<double>(a.shown.size())));  // alpha is the same everywhere
 }
 
-// The same view, lights at the centres of a frame ago where they had one.
+// The same view with every light held at its centre of the frame before, if it had one.
 Picture without_changes(Renderer& renderer, RenderSettings settings, std::span<const uint32_t> centers_before) {
   settings.centers.assign(centers_before.begin(), centers_before.end());
   renderer.draw(settings);
@@ -100,7 +100,7 @@ std::vector<Camera> cameras_along(const std::vector<Camera>& keys, uint32_t fram
     const glm::vec3 forward = glm::mix(a.forward_ws, b.forward_ws, part);
     // Halfway between opposite directions there is none: stay with the nearer key.
     const glm::vec3 towards = glm::dot(forward, forward) > 1e-6f ? forward : (part < 0.5f ? a : b).forward_ws;
-    // Looking from the origin: far away a target one metre off would be rounded.
+    // Computed at the origin: far away, a target one metre ahead would be rounded.
     cameras.push_back(camera_looking_at({}, glm::normalize(towards), glm::mix(a.yfov_rad, b.yfov_rad, part)));
     cameras.back().eye_ws = eye;
   }
@@ -160,7 +160,8 @@ void run_path(const Options& options, const pack::File& pack, const gpu::Device&
   const Json json = path_json(options, run, steps);
   write_file(options.report / "path.json", json.dump(2) + "\n");
   fmt::print(stderr,
-             "{}: {} frames; per frame {:.1f} shadow maps, {:.2f} lights that change their map, RMSE {:.5f} from these changes\n",
+             "{}: {} frames; per frame {:.1f} shadow maps, {:.2f} lights that change their map, RMSE {:.5f} from these "
+             "changes\n",
              (options.report / "path.json").string(), steps.size(), json["mean"]["shadow_maps"].get<double>(),
              json["mean"]["lights_changed"].get<double>(), json["mean"]["unexplained_rmse"].get<double>());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Medians and JSON of what frames took and did.
+// Medians and JSON of the times and counters of frames.
 #include "player/stats.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plain window with a fly camera. It draws when something changed: an open window that nobody touches
-// costs nothing.
+// A plain window with a fly camera. It draws only when something changed, so an untouched window costs nothing.
 #include "player/window.h"
 
 #include <fmt/format.h>
@@ -27,8 +26,8 @@ constexpr float fastest_m_per_s = 500.0f;
 constexpr float fast_factor = 4.0f;  // with Shift
 constexpr float turn_rad_per_px = 0.003f;
 constexpr float longest_step_s = 0.25f;       // a slow device must not throw the camera through a wall
-constexpr float first_step_s = 1.0f / 60.0f;  // after a rest, in which nobody flew
-constexpr double nap_s = 0.25;  // longest wait for something to happen: a signal and another pack are no events
+constexpr float first_step_s = 1.0f / 60.0f;  // after a rest, during which the camera did not move
+constexpr double nap_s = 0.25;                // longest wait for an event: signals and new packs raise none
 
 volatile std::sig_atomic_t asked_to_end = 0;
 std::string glfw_error;  // the last one's description
@@ -131,8 +130,8 @@ struct Window::Impl {
   }
 };
 
-// What is on the screen: drawn anew where something changed, else left as it is. The next frame is recorded while the
-// device still works on the last.
+// The picture on the screen: drawn again if something changed. The next frame is recorded while the device still works
+// on the last.
 class Window::Screen {
  public:
   Screen(Impl& of, LiveScene& live, const gpu::Device& device, VkSurfaceKHR surface)
@@ -141,7 +140,7 @@ class Window::Screen {
         ring_(device, frames_in_flight(device)),
         swapchain_(device, surface, frames_in_flight(device)) {}
 
-  /// True where there was anything to do. `draws_anyway`: even if nothing changed.
+  /// Returns true if it showed a picture. `draws_anyway`: draw even if nothing changed.
   bool update(bool draws_anyway) {
     const bool is_replaced = live_.follow();
     if (is_replaced) last_slot_.reset();
@@ -180,7 +179,7 @@ class Window::Screen {
     return {settings.camera, settings.width, settings.height, settings.headlight};
   }
 
-  // Draws the picture, or takes the last one again, and shows it.
+  // Draws the picture, or reuses the last one, and shows it.
   void show(bool draws) {
     const uint32_t slot = ring_.next();
     const auto image = swapchain_.acquire(slot, framebuffer_size(impl_.window));
