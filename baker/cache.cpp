@@ -36,7 +36,7 @@ std::string build_ids() {
 
 const std::string program_ids = build_ids();  // before main(), so that no module is among them
 
-/// What is wrong with an entry, or nothing; fills `notes`.
+/// The fault of an entry, or an empty text; fills `notes`.
 std::string notes_fault(const pack::File& file, const std::string& name, std::string& notes) {
   const std::string_view source = file.text(file.view().bake_info->source);
   const std::size_t end = source.find('\n');
@@ -105,7 +105,7 @@ std::unique_ptr<CacheEntry> Cache::load(const std::string& name) {
     reject(name, fault);
     return nullptr;
   }
-  // Used now: whoever tidies the folder up by age keeps it.
+  // Marked as used now, so that cleaning the folder by age keeps it.
   if (entry) utimensat(AT_FDCWD, path_of(name).c_str(), nullptr, 0);
   const std::lock_guard lock(mutex_);
   loads_[name] = entry != nullptr;
@@ -131,7 +131,7 @@ void Cache::store(const std::string& name, const pack::View& sections, const std
   view.bake_info = &info;
   view.strings = strings;
   try {
-    // Not synced: the checksums tell what a power failure leaves of it.
+    // Not synced: after a power failure the checksums find an incomplete file.
     pack::write(path_of(name), view, pack::Sync::no, pack::Compression::off, most_threads());
   } catch (const pack::Error& error) {
     const std::lock_guard lock(mutex_);

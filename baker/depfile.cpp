@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Escapes as GCC does for -MD, which is what all readers were made for.
+// Escapes as GCC's -MD does, which all readers understand.
 #include "depfile.h"
 
 #include <set>

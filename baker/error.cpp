@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages are one line each, whatever names and URIs a file holds.
+// Messages are one line each, whatever a file's names and URIs contain.
 #include "error.h"
 
 #include <fmt/core.h>

@@ -39,7 +39,7 @@ void print(const std::string& text) {
   }
 }
 
-/// Into a device, a pipe or a socket, which cannot be replaced by a file.
+/// Writes into a device, a pipe or a socket, which a file cannot replace.
 void write_through(const std::filesystem::path& path, std::string_view text) {
   std::FILE* file = std::fopen(path.c_str(), "we");
   if (!file) fail_write(path.string(), errno);
@@ -63,7 +63,7 @@ void print_summary(const Outcome& outcome) {
       outcome.pack_bytes, outcome.seconds));
 }
 
-/// Before a bake that may take minutes: whether its results could be written.
+/// Checks before the bake, which may take minutes, that its results can be written.
 void check_output(const std::filesystem::path& output) {
   std::error_code error;
   const std::string folder = output.has_parent_path() ? output.parent_path().string() : ".";
@@ -92,7 +92,7 @@ void refuse_overwriting_an_input(const std::vector<std::filesystem::path>& files
   }
 }
 
-/// `work`, with `where` told where memory runs out.
+/// Runs `work`; if memory runs out, the error names `where`.
 template <typename Work>
 auto with_memory_for(const std::string& where, Work work) {
   try {
@@ -151,7 +151,7 @@ void import_all(const baker::Options& options, const baker::Progress& progress, 
   pass.count("converted_materials", static_cast<double>(all.converted_materials));
 }
 
-/// A pack that shows nothing is more likely a mistake than a wish.
+/// A pack that shows nothing is most likely a mistake.
 void warn_of_nothing(const pack::Contents& pack, baker::Warnings& warnings) {
   if (pack.bake_info.instanced_triangles == 0) {
     warnings.add("scene", "triangles", "there are none, so the pack shows nothing");
@@ -175,9 +175,9 @@ pack::Contents make_pack(const baker::Options& options, const baker::Progress& p
   return pack;
 }
 
-/// Writes what commit() then puts in its place, and fills in `outcome`. The check runs while the disk takes what was
-/// written. The depfile comes before the pack is in its place: with the new pack and the old depfile, a file that is
-/// newly read could change unnoticed.
+/// Writes the temporary file that commit() renames, and fills in `outcome`. The check runs while the disk writes. The
+/// depfile is written before the pack gets its name: with a new pack and an old depfile, a change of a newly read file
+/// would go unnoticed.
 void write_pack(const baker::Options& options, const pack::Contents& pack, std::optional<pack::Writer>& writer,
                 Outcome& outcome) {
   outcome.report.run("write", [&](baker::PassReport& pass) {
@@ -197,8 +197,8 @@ void write_pack(const baker::Options& options, const pack::Contents& pack, std::
   outcome.lights = pack.lights.size();
 }
 
-/// Whatever is told comes before the pack is in its place, so that a bake that cannot tell leaves the older one. A
-/// report's file waits in `file`: it must not tell of a pack that could not be put in its place.
+/// Prints everything before the pack gets its name, so that a bake that cannot print leaves the older pack. A report's
+/// file waits in `file`: it must not describe a pack that was not put in place.
 void tell(const baker::Options& options, const Outcome& outcome, std::optional<pack::TemporaryFile>& file) {
   for (const std::string& line : outcome.warnings) fmt::print(stderr, "chandelier-bake: warning: {}\n", line);
   if (options.json == "-") return print(baker::report_json(options, outcome));

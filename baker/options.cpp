@@ -55,7 +55,7 @@ std::string check_smooth_angle(const std::string& text) {
   return {};
 }
 
-/// N, or NX,NY,NZ: cells along each axis, at least one along all or none at all.
+/// N, or NX,NY,NZ: cells along each axis, at least one along every axis, or 0 for no grid.
 std::optional<std::array<std::uint32_t, 3>> resolution_of(const std::string& text) {
   const std::vector<std::string> parts = CLI::detail::split(text, ',');
   std::array<std::uint32_t, 3> out{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress: a thread rewrites the line, so that the seconds run while a pass is busy, and tells what came before it.
+// Progress: a thread rewrites the line, so that the seconds advance during a pass, and prints the passes before it.
 #include "progress.h"
 
 #include <fmt/core.h>

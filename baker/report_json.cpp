@@ -79,7 +79,7 @@ std::string report_json(const Options& options, const Outcome& outcome) {
       {"cache", cache_json(options, outcome)},
       {"warnings", outcome.warnings},
   };
-  // Names that are not UTF-8 are shown with replacement characters: a report is for reading, not for opening files.
+  // Names that are not UTF-8 get replacement characters: a report is for reading, not for opening files.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

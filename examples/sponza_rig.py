@@ -4,7 +4,7 @@
 
 Bake both together: `chandelier-bake crytek_sponza.gltf rig.glb -o sponza.chandelier`. Ten circles of eight hang at five
 bays on both sides, in turns in the court before an arch, from where they light court and banners, and in the aisle behind
-it, from where columns and curtains throw their shadows into the court.
+it, from where columns and curtains cast their shadows into the court.
 """
 
 import math

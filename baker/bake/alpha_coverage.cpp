@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alpha coverage by order statistics: the scale is what brings the right number of texels over the cutoff.
+// Alpha coverage by order statistics: the scale that brings the right number of texels over the cutoff.
 #include "alpha_coverage.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ int first_passing_code(float cutoff) {
   return code;
 }
 
-/// What separates the texels that shall pass from the others.
+/// The threshold between texels that shall pass and the others.
 struct Threshold {
   float passing;  // the least that passes; infinity: none
   float failing;  // the greatest that does not; -infinity: all pass

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes, animations and skins into their records, in the scene's order.
+// Writes nodes, animations and skins into their records, in the scene's order.
 #include "animation.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void add_node(const Node& node, Strings& strings, pack::Contents& pack) {
   pack.nodes.push_back(out);
 }
 
-/// Where the channel's times are, put there unless the channel before has the same.
+/// The first time of the channel; appends its times unless the channel before has the same ones.
 std::uint32_t add_times(const AnimationChannel& channel, const AnimationChannel* before, pack::Contents& pack) {
   if (before && before->times_s == channel.times_s) return pack.animation_channels.back().first_key;
   const std::uint32_t first = fit_u32(pack.animation_times.size(), "animation keys");

@@ -50,8 +50,8 @@ std::uint64_t bytes_of(const std::vector<Records>&... sections) {
   return (std::span(sections).size_bytes() + ...);
 }
 
-/// Everything that neither lights nor image bytes touch: what a cache keeps from one bake to the next. Materials and
-/// nodes are there already.
+/// Bakes everything that depends neither on lights nor on image bytes; a cache keeps the result. Materials and nodes
+/// are in the pack already.
 void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
                    Strings& strings, pack::Contents& pack) {
   const std::vector<MeshRecords> meshes = bake_meshes(scene, settings, report, pack);
@@ -68,7 +68,7 @@ void bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& p
   report.run("voxels", [&](PassReport& pass) { make_voxels(settings.voxels, progress, pack, pass); });
 }
 
-/// From the cache where it has it, else baked and kept.
+/// Takes the geometry from the cache, or bakes and stores it.
 void find_or_bake_geometry(Scene& scene, const BakeSettings& settings, const Progress& progress, Report& report,
                            Cache& cache, Strings& strings, pack::Contents& pack) {
   if (!cache.is_on()) return bake_geometry(scene, settings, progress, report, strings, pack);

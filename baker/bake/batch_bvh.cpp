@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hierarchies over what stands still in the world: batch instances, and instances.
+// Hierarchies over static batch instances and static instances.
 #include "batch_bvh.h"
 
 #include <glm/glm.hpp>
@@ -30,7 +30,7 @@ std::vector<BvhItem> instance_items(const pack::Contents& pack) {
   return items;
 }
 
-/// The tree over `items`, and in `refs` whose they are.
+/// The tree over `items`; `refs` gets their owners.
 template <typename Ref>
 void make_bvh(std::vector<BvhItem>& items, std::vector<pack::BvhNode>& nodes, std::vector<Ref>& refs,
               PassReport& pass) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches, concatenated in the order of meshes and primitives. Where each one goes is counted first, so that all are
-// written at once.
+// Batches, concatenated in the order of meshes and primitives. Their positions are counted first, so that all can be
+// written in parallel.
 #include "batches.h"
 
 #include <tbb/parallel_for.h>
@@ -12,7 +12,7 @@
 namespace chandelier::baker {
 namespace {
 
-/// Where a primitive goes in the pack.
+/// The position of a primitive in the pack's sections.
 struct Place {
   std::size_t vertex = 0, skin_vertex = 0;
   bool skinned = false;  // the mesh is
@@ -62,7 +62,7 @@ void write_vertices(const CutPrimitive& cut, const Place& place, pack::Contents&
   });
 }
 
-/// Bounds and cone, from the corners of a batch. Where a skin bends it, no cone holds.
+/// Bounds and cone, from the corners of a batch. A batch that a skin bends has no valid cone.
 void measure(std::span<const glm::vec3> corners, bool skinned, pack::Batch& batch) {
   batch.bounds_min_ls = batch.bounds_max_ls = corners[0];
   for (const glm::vec3& corner : corners) {

@@ -67,7 +67,7 @@ SquaredError compress_color(const Block& block, bool alpha, std::uint8_t* out) {
   return error.sum > poor * error.values ? fit(squish::kColourClusterFit) : error;
 }
 
-/// libsquish writes BC5 but does not read it: a half of it is the alpha of a BC3 block.
+/// libsquish writes BC5 but does not read it. Each half of a BC5 block has the form of a BC3 block's alpha.
 SquaredError compress_two_channels(const Block& block, std::uint8_t* out) {
   squish::CompressMasked(block.texels.data(), block.mask, out, squish::kBc5);
   SquaredError error;

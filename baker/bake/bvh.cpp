@@ -73,7 +73,7 @@ std::size_t cut(std::span<BvhItem> items, std::size_t most_leaf, const Box& cent
   }
   const std::size_t count = best.axis < 0 ? 0 : partition(items, binning, best.axis, best.bin, left, right);
   if (count > 0 && count < items.size()) return count;
-  // No plane parts the centres, or areas are beyond a float.
+  // No plane separates the centres, or areas overflow a float.
   if (items.size() <= most_leaf) return 0;
   left = right = centres;
   return items.size() / 2;

@@ -20,7 +20,7 @@ ClipVertex crossing(const ClipVertex& low, const ClipVertex& high, int axis, dou
   return out;
 }
 
-/// Zero has no sign here, so that equal vertices have equal bytes.
+/// Removes the sign of zero, so that equal vertices have equal bytes.
 pack::VoxelVertex rounded(const ClipVertex& vertex) {
   return {glm::vec3(vertex.position) + 0.0f, glm::vec2(vertex.uv) + 0.0f};
 }
@@ -29,7 +29,7 @@ double area_m2(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   return 0.5 * glm::length(glm::cross(b - a, c - a));
 }
 
-/// A triangle of a piece-to-be.
+/// A triangle of a piece that is being built.
 struct CutTriangle {
   std::uint32_t cell;
   std::array<pack::VoxelVertex, 3> corners;

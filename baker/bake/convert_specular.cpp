@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows in parallel; each texel by itself.
+// Converts each texel by itself, rows in parallel.
 #include "convert_specular.h"
 
 #include <tbb/parallel_for.h>

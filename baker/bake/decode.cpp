@@ -57,7 +57,7 @@ std::vector<std::uint8_t> to_rgba(std::vector<std::uint8_t>&& in, std::size_t te
   return out;
 }
 
-/// Beside the program, in the build folder as where it is installed.
+/// The module's path, relative to the program, in the build folder and where it is installed.
 std::filesystem::path module_path() {
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   return (folder / CHANDELIER_MODULE_FOLDER / "chandelier_images.so").lexically_normal();
@@ -101,7 +101,7 @@ void refuse_empty(const EncodedImage& image, const std::string& damage) {
   if (!damage.empty() && has_no_picture(claimed_size(image), image.bytes.size())) fail(image.where, damage);
 }
 
-/// With what is wrong with the file as a whole in `damage`.
+/// `damage` gets the faults of the file as a whole.
 DecodedImage decode_any(const EncodedImage& image, std::string& damage) {
   if (is_png(image)) {
     const Bytes png = essential_png(image.bytes, image.where, damage);

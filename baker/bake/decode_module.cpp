@@ -24,7 +24,8 @@ const char* name_of(ImageFormat format) {
   }
 }
 
-/// The first of OpenImageIO's lines, for it says things twice, without the name that it was given and what is no news.
+/// The first line of OpenImageIO's message (it repeats itself), without the file name that it was given and without a
+/// fixed prefix.
 std::string first_line(const std::string& text, ImageFormat format) {
   constexpr std::string_view no_news = "JPEG error: ";
   std::string line = text.substr(0, text.find('\n'));

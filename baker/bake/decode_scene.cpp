@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes what an image of the scene is made of, and converts it.
+// Decodes the sources of an image of the scene, and converts them.
 #include "decode_scene.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The entry is a pack with the geometry's sections. Its materials only say what geometry asks of them; they and
+// The entry is a pack with the geometry's sections. Its materials hold only what the geometry depends on. Materials and
 // everything else come from the scene that is baked.
 #include "geometry_cache.h"
 

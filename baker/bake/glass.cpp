@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shadow map holds light or no light: a surface throws a whole shadow or none, as what it lets through rounds. What
-// that is, KHR_materials_transmission says: factor · texture (red), of what is no metal (1 - factor · texture (blue)).
+// A shadow map holds light or no light, so a surface casts a whole shadow or none: none if it lets half of the light or
+// more through. KHR_materials_transmission gives that share: factor · texture (red), of the non-metallic part (1 -
+// factor · texture (blue)).
 #include "glass.h"
 
 #include <tbb/parallel_for.h>
@@ -52,7 +53,7 @@ class Planes {
   std::map<std::pair<std::uint32_t, std::size_t>, Plane> planes_;
 };
 
-/// One channel of a texture; 1 everywhere where there is none.
+/// One channel of a texture; 1 everywhere if there is no texture.
 class Channel {
  public:
   Channel(const Scene& scene, const TextureUse& use, std::size_t channel, Planes& planes) : use_(use) {
@@ -61,10 +62,10 @@ class Channel {
     plane_ = &planes.of(scene, texture_.image, channel);
   }
 
-  /// What is wrong with the files that the texture is made of. It must be there.
+  /// The damage of the texture's files. There must be a texture.
   const std::vector<std::string>& damage() const { return plane_->damage; }
 
-  /// At the nearest texel: what is asked is the mean over a triangle.
+  /// At the nearest texel: only means over triangles are needed.
   float at(const glm::vec2& uv0, const glm::vec2& uv1) const {
     if (!plane_) return 1;
     const glm::vec3 uv(use_.uv1 ? uv1 : uv0, 1);
@@ -94,7 +95,7 @@ class Transmission {
         through_(scene, material.transmission_map, 0, planes),
         metal_(scene, material.metallic_factor > 0 ? material.metallic_roughness : TextureUse{}, 2, planes) {}
 
-  /// What is wrong with the map of what passes; the other is looked at with all images.
+  /// The damage of the transmission map; the other map is checked with all images.
   const std::vector<std::string>& damage() const { return through_.damage(); }
 
   /// Of a triangle, in the mean.
@@ -122,7 +123,7 @@ class Transmission {
   Channel through_, metal_;
 };
 
-/// Of each triangle of a primitive whether it is glass.
+/// For each triangle of a primitive, whether it is glass.
 std::vector<std::uint8_t> glass_triangles(const Primitive& primitive, const Transmission& transmission) {
   std::vector<std::uint8_t> out(primitive.indices.size() / 3);
   tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) {
@@ -187,7 +188,7 @@ bool has_maps(const Material& material) {
   return may_be_metal || material.transmission_map.texture != no_index;
 }
 
-/// Whether any of the material throws no shadow now.
+/// Whether any of the material casts no shadow now.
 bool find_glass_of(Scene& scene, std::uint32_t number, const ImageSettings& images, Planes& planes,
                    Warnings& warnings) {
   Material& material = scene.materials[number];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The entry is a pack with nothing but images; its notes say which request has which, and what compression lost.
+// The entry is a pack with only images. Its notes map requests to images, and hold the loss of compression.
 #include "image_cache.h"
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What is wrong with an entry, or nothing.
+/// The fault of an entry, or an empty text.
 std::string read_entry(const CacheEntry& entry, std::size_t source_count, std::size_t request_count, MadeImages& made) {
   const pack::View& view = entry.pack.view();
   const Json notes = Json::parse(entry.notes);

@@ -40,7 +40,7 @@ Formats formats_of(ImageUse use) {
   }
 }
 
-/// In blocks where asked for and where they are smaller: a texel alone is not.
+/// Compresses into blocks if asked for and if they are smaller: a single texel is not.
 StoredTexels stored(std::vector<Texels>&& levels, ImageUse use, TextureMode mode) {
   const Formats formats = formats_of(use);
   StoredTexels out;
@@ -122,7 +122,7 @@ std::vector<Job> jobs_of(const std::vector<ImageRequest>& requests, const Scene&
   return jobs;
 }
 
-/// What a request asks of its image: those that ask the same share the answer.
+/// The parameters of a request: requests with equal ones share the result.
 struct Wish {
   ImageUse use;
   float alpha_cutoff;

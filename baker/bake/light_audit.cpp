@@ -206,9 +206,9 @@ void audit_units(Audit& audit, const Numbers& placed) {
 
 // ---- Places ---------------------------------------------------------------------------------------------------------
 
-/// Whether a closed shell around the light keeps it in: most rays start inside, and meet the shell's back before all
-/// else. Around a lamp in a room of a closed building they meet the room first. A back that is seen (a double-sided
-/// material) may be meant to be lit, unless it is as near as a bulb. What is nearer than shadow maps see casts none.
+/// Whether a closed shell around the light blocks it: most rays start inside and hit the shell's back first. Around a
+/// lamp in a room of a closed building they hit the room first. A visible back (a double-sided material) may be meant
+/// to be lit, unless it is as near as a bulb. A surface that is nearer than shadow maps see casts no shadow.
 bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
   const glm::dvec3 from(light.position_ws);
   const std::vector<glm::dvec3> ways = directions_of(light, rays);
@@ -224,7 +224,7 @@ bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
   return inside > rays / 2 && kept > rays / 2;
 }
 
-/// Lights whose shadow maps miss what is nearest to them: a shade, or a wall that they stand in.
+/// Lights whose shadow maps miss the nearest surface: a shade, or a wall that they are in.
 void audit_touching(Audit& audit, const Numbers& placed) {
   constexpr double least_m = pack::least_shadow_near_m / pack::shadow_near_per_distance;
   Numbers touching;

@@ -13,7 +13,8 @@
 namespace chandelier::baker {
 namespace {
 
-/// Calls visit(batch instance) for the static ones that `meets(low, high)`, until it says true. Whether it did.
+/// Calls visit(batch instance) for the static ones whose box `meets(low, high)`, until it returns true. Returns whether
+/// it did.
 template <typename Meets, typename Visit>
 bool visit_batches(const pack::Contents& pack, Meets meets, Visit visit) {
   const auto test = [&](const pack::BatchInstance& draw) {
@@ -116,7 +117,7 @@ double cosine_to_triangle(const Triangle& t, const glm::dvec3& axis) {
       {cosine_to_segment(t[0], t[1], axis), cosine_to_segment(t[1], t[2], axis), cosine_to_segment(t[2], t[0], axis)});
 }
 
-/// Notes the batch's triangles that the ray meets and that throw shadows. The ray goes into mesh space, where distances
+/// Notes the batch's triangles that the ray meets and that cast shadows. The ray goes into mesh space, where distances
 /// along it stay.
 void cast_at_batch(const pack::Contents& pack, const pack::BatchInstance& draw, const Ray& ray, double least_m,
                    RayHit& hit) {
@@ -175,7 +176,7 @@ double farthest_of_box(const glm::dvec3& point, const glm::vec3& low, const glm:
   return glm::length(glm::max(glm::abs(point - glm::dvec3(low)), glm::abs(point - glm::dvec3(high))));
 }
 
-/// Calls visit(batch instance) for those that throw a shadow, moving ones where they rest, and whose boxes are not
+/// Calls visit(batch instance) for those that cast a shadow, moving ones where they rest, and whose boxes are not
 /// farther away than `nearest`, which it may lessen.
 template <typename Visit>
 void visit_casters_near(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, const glm::dvec3& point,

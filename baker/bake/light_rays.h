@@ -27,7 +27,7 @@ std::vector<glm::dvec3> directions_of(const pack::Light& light, int count);
 /// The numbers of those that no hierarchy holds, since they may move.
 std::vector<std::uint32_t> moving_batch_instances(const pack::Contents& pack);
 
-/// How far the nearest triangle is that throws a shadow, wherever its cut-outs are, and where it rests if it moves;
+/// How far the nearest triangle is that casts a shadow, wherever its cut-outs are, and where it rests if it moves;
 /// `most_m` where none is nearer. `moving`: moving_batch_instances, so that many lights need them only once.
 double nearest_caster_m(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, const glm::dvec3& at,
                         double most_m);

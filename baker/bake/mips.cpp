@@ -77,7 +77,8 @@ void over_rows(std::uint32_t width, std::uint32_t height, Work work) {
                     [&](const auto& rows) { work(rows.begin(), rows.end()); });
 }
 
-/// The mean of the texels under `columns` and `rows`, by alpha where that is tested: what is not seen has no colour.
+/// The mean of the texels under `columns` and `rows`; weighted by alpha if that is tested, since invisible texels add
+/// no colour.
 template <typename Texel>
 glm::vec4 mean(const Taps& columns, const Taps& rows, bool by_alpha, Texel texel) {
   glm::vec4 sum(0);
@@ -164,8 +165,8 @@ void normalize(Texels& top) {
   }
 }
 
-/// Gives texels that are not seen the colour of the level below, which comes from what is seen around them: filters
-/// mix it in at the edges.
+/// Gives invisible texels the colour of the next smaller level, which comes from the visible texels around them:
+/// filters mix it in at edges.
 void fill_unseen(Texels& top, std::vector<Level>& levels) {
   const auto below = [](const Level& level, std::uint32_t x, std::uint32_t y) {
     const std::size_t row = std::min(y / 2, level.height - 1);

@@ -140,8 +140,8 @@ class CreaseNormals {
   std::vector<Halfedge> sector_;
 };
 
-/// Gives corner i the normal `normal_of(i)`. Corners of one vertex share a copy of it where their normals are equal, as
-/// far as a short look finds out: vertices are welded later.
+/// Gives corner i the normal `normal_of(i)`. Corners of one vertex with equal normals share a copy of it, if a short
+/// search finds it; vertices are welded later anyway.
 template <typename NormalOf>
 void set_normals(Primitive& primitive, NormalOf normal_of) {
   constexpr int look_ahead = 8;

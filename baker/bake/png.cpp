@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG (ISO/IEC 15948) as a row of chunks: length, type, data, CRC-32. All that the decoder would complain about on
-// stderr is found and mended here first.
+// PNG (ISO/IEC 15948) as a row of chunks: length, type, data, CRC-32. Everything that the decoder would report on
+// stderr is found and repaired here first.
 #include "png.h"
 
 #include <zlib.h>
@@ -29,7 +29,7 @@ struct Chunk {
   std::size_t size;
 };
 
-/// Only the first is told.
+/// Keeps the first message only.
 void note(std::string& damage, const std::string& what) {
   if (damage.empty()) damage = what;
 }
@@ -44,8 +44,8 @@ bool is_critical(const std::string& type) {
   return type[0] >= 'A' && type[0] <= 'Z';
 }
 
-/// As libpng has it, an ancillary chunk with a wrong checksum does not count; a critical one does, but for the header.
-/// What is there of image data counts where the file is cut.
+/// As in libpng, an ancillary chunk with a wrong checksum is dropped; a critical one is kept, except the header. If the
+/// file is cut, the image data that is there is kept.
 std::vector<Chunk> split_chunks(const Bytes& bytes, const std::string& where, std::string& damage) {
   std::vector<Chunk> out;
   const auto cut_short = [&] {
@@ -138,7 +138,7 @@ class Inflater {
     return stream_.avail_out > 0 ? fault("its data ends in row", number) : "";
   }
 
-  /// What follows the last row is of no use, but a wrong checksum says that the rows are not what they were.
+  /// Data after the last row is not needed, but a wrong checksum shows that the rows have changed.
   std::string finish() {
     Bytes more(1);
     if (!inflate_to(more)) return fault("its data cannot be inflated after byte", stream_.total_in);
@@ -146,7 +146,7 @@ class Inflater {
   }
 
  private:
-  /// As much as there is; false where it is not what a deflater writes.
+  /// Inflates what is there; false if the stream is not valid.
   bool inflate_to(Bytes& out) {
     stream_.next_out = out.data();
     stream_.avail_out = static_cast<uInt>(out.size());
@@ -191,7 +191,7 @@ Rows check_rows(const std::vector<std::size_t>& sizes, const std::vector<Chunk>&
   return out;
 }
 
-/// The good rows again, and each other as the one above it.
+/// The good rows again; every other row repeats the one above it.
 Bytes mended_rows(const std::vector<std::size_t>& sizes, std::size_t good, const std::vector<Chunk>& data) {
   constexpr std::uint8_t up_filter = 2;  // filter: what is added to the row above
   Inflater inflater(data);
@@ -229,7 +229,7 @@ bool fits(const Chunk& chunk, const Header& header, std::size_t palette_colors) 
   return chunk.size == (header.color == grey_type ? 2u : 6u);
 }
 
-/// With a checksum that is right.
+/// Appends a chunk with its correct checksum.
 void append(const std::string& type, const std::uint8_t* data, std::size_t size, Bytes& out) {
   const auto append_u32 = [&](std::uint32_t value) {
     for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
@@ -245,7 +245,7 @@ void append(const Chunk& chunk, Bytes& out) {
   append(chunk.type, chunk.data, chunk.size, out);
 }
 
-/// The image data as it is, or made whole.
+/// The image data as it is, or repaired.
 void append_data(const Header& header, const std::vector<Chunk>& data, std::size_t file_bytes, const std::string& where,
                  std::string& damage, Bytes& out) {
   const std::vector<std::size_t> sizes = row_sizes(header);

@@ -15,7 +15,7 @@
 namespace chandelier::baker {
 namespace {
 
-/// What a mesh's vertices lose, measured: greatest values, so that their order does not matter.
+/// The measured errors of a mesh's vertices: maxima, so their order does not matter.
 struct Errors {
   double distance_ls = 0;
   double chord = 0;  // between unit vectors
@@ -259,7 +259,7 @@ std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings,
     errors[m].distance_ls *= std::max(scales[m], 0.0);
     all.include(errors[m]);
   }
-  // The next float that is not below: what is said must hold.
+  // Rounded up to a float, so that the stated error is an upper bound.
   const auto up = [](double value) { return value > 0 ? std::nextafter(static_cast<float>(value), INFINITY) : 0.0f; };
   info.position_error_m = up(all.distance_ls);
   info.normal_error_rad = up(2 * std::asin(std::min(all.chord / 2, 1.0)));

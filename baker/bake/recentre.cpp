@@ -54,7 +54,7 @@ bool is_far(const glm::dvec3& place) {
   return std::max({spacing(place.x), spacing(place.y), spacing(place.z)}) > coarse_m;
 }
 
-/// Of a far place: every coordinate for which floats are coarse is one all the same.
+/// Of a far position: every coordinate where floats are coarse is exactly a float.
 bool is_of_floats(const glm::dvec3& place) {
   for (int axis = 0; axis < 3; ++axis) {
     if (spacing(place[axis]) > coarse_m && !is_float(place[axis])) return false;
@@ -62,8 +62,8 @@ bool is_of_floats(const glm::dvec3& place) {
   return true;
 }
 
-/// Whether most of the far places are floats: then they have been rounded. Of a scene that is placed far away as a
-/// whole most are not, and of a scene that was rounded node by node all but what hangs from other nodes are.
+/// Whether most far positions are exactly floats: then they have been rounded. In a scene that was placed far away as a
+/// whole, most are not; in a scene that was rounded node by node, all are, except below other nodes.
 bool are_rounded(const std::vector<glm::dvec3>& places) {
   const auto far = std::ranges::count_if(places, is_far);
   const auto floats =
@@ -71,7 +71,7 @@ bool are_rounded(const std::vector<glm::dvec3>& places) {
   return 2 * floats > far;
 }
 
-/// Nobody can tell where it was rounded from what was meant: whole millimetres are.
+/// A position in whole millimetres may be intended or rounded; it counts as intended.
 bool is_coarse(const glm::dvec3& place) {
   if (!is_of_floats(place)) return false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,7 +87,7 @@ glm::dmat4 moved(const glm::dvec3& by) {
   return out;
 }
 
-/// Names what floats in the files hold only coarsely. `boxes`: of each mesh as its file has it.
+/// Warns of positions that the files' floats hold only coarsely. `boxes`: of each mesh in its file's coordinates.
 void warn_of_rounding(const Scene& scene, const std::vector<Box>& boxes, Warnings& warnings) {
   std::vector<glm::dvec3> places;
   for (const MeshInstance& instance : scene.instances) places.emplace_back(instance.world_from_local[3]);
@@ -118,8 +118,8 @@ void warn_of_rounding(const Scene& scene, const std::vector<Box>& boxes, Warning
   for (const std::string& name : names) warnings.add("scene", "positions", what, name);
 }
 
-/// Meshes whose vertices lie far from their own origin; their instances stand as much farther. One that a skin bends
-/// stays, since its joints may bend others too. How many.
+/// Moves meshes whose vertices are far from their own origin, and their instances the opposite way. A mesh that a skin
+/// bends stays, since its joints may bend others too. Returns how many were moved.
 int recentre_meshes(Scene& scene, const std::vector<Box>& boxes) {
   std::vector<glm::dvec3> origins(scene.meshes.size(), glm::dvec3(0));
   for (std::size_t m = 0; m < boxes.size(); ++m) {

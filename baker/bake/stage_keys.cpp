@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each struct is taken apart into all its members, so that one that is added does not compile until it is part of the
-// key, or is left out on purpose.
+// Each struct is destructured into all its members, so a new member does not compile until it is part of the key, or is
+// left out on purpose.
 #include "stage_keys.h"
 
 #include <glm/glm.hpp>

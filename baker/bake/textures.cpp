@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials and textures. An image that serves as colour here and as data there is asked for once as each.
+// Materials and textures. An image that is used as colour and as data gets one request for each use.
 #include "textures.h"
 
 #include <map>

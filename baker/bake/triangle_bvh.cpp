@@ -94,7 +94,7 @@ std::uint32_t place_nodes(std::vector<Tree>& trees, std::vector<pack::Mesh>& mes
   return nodes;
 }
 
-/// The sections with zeros; clearing memory takes long enough to be shared.
+/// Fills the sections with zeros, in parallel, since clearing memory takes long.
 void make_room(std::uint32_t nodes, std::uint32_t items, pack::Contents& pack) {
   tbb::parallel_invoke([&] { pack.triangle_bvh.assign(nodes, {}); },
                        [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// libdraco allocates what a stream claims before it finds the stream too short: so the claims are read first, and must
+// libdraco allocates what a stream claims before it finds the stream too short. So the claims are read first, and must
 // agree with the accessors, whose counts are bounded.
 #include "draco.h"
 
@@ -25,8 +25,8 @@ draco::DecoderBuffer buffer_of(std::span<const std::uint8_t> bytes) {
   return buffer;
 }
 
-/// What the stream says of itself (bitstream 2.2, as the extension asks): of an edgebreaker stream's points, only the
-/// vertices that its connectivity has, which attributes may split.
+/// The counts in the stream's header (bitstream 2.2, as the extension asks). For an edgebreaker stream, points are the
+/// vertices of its connectivity, which attributes may split.
 Counts claimed_counts(std::span<const std::uint8_t> bytes, const std::string& where) {
   draco::DecoderBuffer buffer = buffer_of(bytes);
   draco::DracoHeader header;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys of glTF 2.0's objects (its JSON schemas) and of KHR_lights_punctual's; what else extensions and extras hold
-// is their own affair.
+// The keys of glTF 2.0's objects (its JSON schemas) and of KHR_lights_punctual's. Other extensions and extras are not
+// checked.
 #include <algorithm>
 #include <cctype>
 #include <map>

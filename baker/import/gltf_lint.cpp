@@ -198,7 +198,8 @@ void lint_skins(const Lint& lint) {
   });
 }
 
-/// Empty arrays, and extensions that extensionsUsed does not name; what extras and extensions hold is their own affair.
+/// Warns of empty arrays, and of extensions that extensionsUsed does not name; the content of extras and extensions is
+/// not checked.
 void lint_tree(const Lint& lint, const Json& value, const std::set<std::string>& declared) {
   if (value.is_array() && value.empty()) lint.warnings.add(lint.file, "glTF", "breaks glTF: an array is empty");
   if (!value.is_object() && !value.is_array()) return;

@@ -25,7 +25,7 @@ struct Chunks {
   std::span<const std::uint8_t> json, bin;
 };
 
-/// One that is known as something else need not be read as JSON to say so.
+/// If the file is of another known kind, the error says so without parsing it as JSON.
 void refuse_other_kinds(std::span<const std::uint8_t> bytes, const std::string& file) {
   const pack::KnownFile is = pack::known_file(file, std::as_bytes(bytes));
   if (is.kind == pack::FileKind::pack) {
@@ -98,8 +98,7 @@ void make_integer(Json& json) {
   if (number >= 0 && number < 9e15 && number == std::floor(number)) json = static_cast<std::uint64_t>(number);
 }
 
-/// JSON makes no difference between 1 and 1.0, but tinygltf does: whole numbers, of the keys that ask for them, become
-/// so.
+/// JSON does not distinguish 1 and 1.0, but tinygltf does. So 1.0 becomes 1 under keys that need whole numbers.
 void make_integers(Json& json) {
   static const std::set<std::string> keys = {
       "attributes", "buffer",        "bufferView", "byteLength", "byteOffset", "byteStride", "camera",
@@ -172,7 +171,7 @@ bool is_fallback(const Json& buffer) {
   return buffer.value(ext, Json()) == true || buffer.value(khr, Json()) == true;
 }
 
-/// A buffer's bytes, or what is wrong with it: an error only where something reads it.
+/// A buffer's bytes, or its fault, which is thrown only when something reads it.
 void load_buffer(Gltf& gltf, std::size_t number, std::span<const std::uint8_t> bin, Warnings& warnings) {
   const Json& json = gltf.json["buffers"][number];
   const std::string here = place(gltf.json, "buffers", number), where = gltf.file + ": " + here;

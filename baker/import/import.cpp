@@ -46,8 +46,8 @@ const Pose* pose_of(const Import& in, const tinygltf::Node& node) {
   return pose.world_from_bind.empty() ? nullptr : &pose;
 }
 
-/// A mesh with a skin stands where its joints are, wherever its node is (glTF 2.0, 3.7.3.3). Where nothing moves them,
-/// its vertices are there. Else it is in its bind pose, as a whole, where the first joint puts it.
+/// A mesh with a skin is placed by its joints, wherever its node is (glTF 2.0, 3.7.3.3). If nothing moves them, its
+/// vertices are baked in place. Otherwise the mesh stays in its bind pose, and the first joint places it as a whole.
 glm::dmat4 place_of_mesh(const Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   if (const Pose* pose = pose_of(in, node)) return glm::translate(glm::dmat4(1), pose->origin_ws);
@@ -56,8 +56,8 @@ glm::dmat4 place_of_mesh(const Import& in, const PlacedNode& placed) {
   return is_degenerate(by_joint) ? placed.world_from_local : by_joint;
 }
 
-/// Whether a place without a volume is only that of the rest pose. Copies (EXT_mesh_gpu_instancing) need an inverse of
-/// their node's.
+/// Whether a transform without volume occurs only in the rest pose. Copies (EXT_mesh_gpu_instancing) need the inverse
+/// of their node's transform.
 bool may_grow(const Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   if (node.extensions.contains("EXT_mesh_gpu_instancing")) return false;
@@ -72,7 +72,7 @@ void warn_of_scale(const Import& in, const PlacedNode& placed) {
                   "a mesh whose scale is zero or not within 1e-9 to 1e9 is skipped");
 }
 
-/// Says that what the node carries is left out; a camera never is.
+/// Warns that the node's mesh or light is left out; cameras never are.
 void count_hidden(Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   if (node.mesh < 0 && !node.extensions.contains("KHR_lights_punctual")) return;
@@ -178,8 +178,8 @@ void add_mesh(Import& in, const MeshShape& shape, std::vector<ReadPrimitive>&& r
   in.scene.meshes.push_back(std::move(mesh));
 }
 
-/// Stands the instance where its mesh's skin has it, where it has one and its mesh has joints. Throws Error where the
-/// mesh asks for joints that the skin lacks.
+/// Places the instance by its mesh's skin, if it has one and its mesh has joints. Throws Error if the mesh uses joints
+/// that the skin lacks.
 void place_by_skin(const Import& in, const PlacedNode& placed, const MeshUse& mesh, MeshInstance& instance) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   const std::uint32_t skin = skin_of(in, node);

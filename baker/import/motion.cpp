@@ -123,7 +123,7 @@ bool is_bind_pose(const std::vector<glm::dmat4>& world_from_bind, const std::vec
   });
 }
 
-/// A skin whose joints an animation moves goes into the scene; of others, where they stand is all there is to know.
+/// Skins whose joints an animation moves go into the scene; of others only the pose is kept.
 void add_skin(const Gltf& gltf, std::size_t number, const std::vector<glm::dmat4>& world, Motion& motion, Scene& scene,
               Warnings& warnings) {
   const Json& json = gltf.json["skins"][number];

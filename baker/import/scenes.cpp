@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A name comes before a number, so that a scene named "2" can be had.
+// A name is tried before a number, so that a scene named "2" can be chosen.
 #include "scenes.h"
 
 #include <algorithm>

@@ -37,7 +37,7 @@ struct Summary {
   std::vector<Stored> stored;  ///< By section_infos.
   std::uint64_t stored_triangles = 0;
   std::uint64_t drawn_triangles = 0;
-  std::uint64_t shadowless_triangles = 0;  ///< Of those, the ones that throw no shadow.
+  std::uint64_t shadowless_triangles = 0;  ///< Of those, the ones that cast no shadow.
   std::uint64_t static_triangles = 0;      ///< Of those, the ones in instances that stand still.
   Spread batch_triangles;
   std::uint64_t masked_materials = 0;

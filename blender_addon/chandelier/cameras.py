@@ -7,13 +7,13 @@ from .core import clusters
 
 
 def camera_of(context, table):
-    """Whom the distances are measured from."""
+    """The camera from which distances are measured."""
     view = viewport_camera(context) if context.scene.chandelier.view == "viewport" else None
     return view or scene_camera_of(context, table)
 
 
 def scene_camera_of(context, table):
-    """Where the player starts. Without a camera that it can take, all lights are in view of their own middle."""
+    """The camera with which the player starts. Without a usable camera, all lights are in view, and distances are from the lights' centre."""
     camera = perspective_camera(context.scene)
     if camera:
         return scene_camera(context, camera)

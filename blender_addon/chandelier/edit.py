@@ -18,7 +18,7 @@ def named(objects, name):
 
 
 def is_editable(thing):
-    """Not another file's. What is overridden here is ours."""
+    """Whether it belongs to this file. Overridden data counts as this file's."""
     return thing.library is None
 
 
@@ -28,7 +28,7 @@ def data_of(lights):
 
 
 class CHANDELIER_OT_edit_lights(bpy.types.Operator):
-    """Set what is ticked on all selected lights"""
+    """Set the ticked values on all selected lights"""
     bl_idname = "chandelier.edit_lights"
     bl_label = "Edit Lights"
     bl_options = {"REGISTER", "UNDO"}

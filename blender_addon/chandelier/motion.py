@@ -16,13 +16,13 @@ SAMPLED = KEYED if bpy.app.version < (4, 2) else ("",)
 
 
 class Link(NamedTuple):
-    """Of a chain of parents."""
+    """An element of a chain of parents."""
     thing: bpy.types.Object
     bone: str = ""  # of an armature; empty: the object itself
 
 
 def is_exported(thing, still):
-    """Will the exported file move an object?"""
+    """Whether the exported file moves an object."""
     return any(is_sampled(link) and (link.bone or is_keyed(link) or cause_of(link, still)) for link in chain(thing))
 
 
@@ -117,19 +117,19 @@ def moves_itself(link):
 
 
 def rides(link):
-    """Is it the child of a path along which time carries it?"""
+    """Whether it is the child of an animated path."""
     parent = link.thing.parent
     is_on_path = not link.bone and parent and parent.type == "CURVE" and link.thing.parent_type == "OBJECT" and parent.data.use_path
     return bool(is_on_path) and is_animated(parent.data)
 
 
 def is_led(link, still):
-    """Does a constraint follow something that moves?"""
+    """Whether a constraint follows something that moves."""
     return any(moves(leader, still) for leader in leaders(link))
 
 
 def leaders(link):
-    """What its constraints follow."""
+    """The objects that its constraints follow."""
     thing, bone = link
     constraints = thing.pose.bones[bone].constraints if bone else thing.constraints
     chains = [constraint for other in thing.pose.bones for constraint in other.constraints
@@ -147,7 +147,7 @@ def targets_of(constraint):
 
 
 def moves(link, still):
-    """Does it, or anything that it follows or is carried by, move?"""
+    """Whether it moves, or anything that it follows or that carries it."""
     seen, waiting = {link}, [link]
     while waiting:
         link = waiting.pop()

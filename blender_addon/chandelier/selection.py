@@ -19,7 +19,7 @@ def settings_of(scene):
 
 
 def find():
-    """What computes selections: a library, else a program. Raises PreviewError."""
+    """The backend that computes selections: the library, or else the program. Raises PreviewError."""
     return clusters.find(tool_folders())
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes and materials that throw no shadow: seen as ever, and no light knows of them.
+// Meshes and materials that cast no shadow: seen as ever, and no light knows of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr uint32_t width = 96, height = 72;
 enum class Without { nothing, instance, material };
 
 // A floor under a ball, a box and a cut-out sheet, and lamps of all types above. `without` says what of the three
-// throws no shadow, and by which of its marks.
+// casts no shadow, and by which of its marks.
 pack::File things_over_a_floor(Without without) {
   Scene scene;
   pack::Material floor = plain_material(glm::vec3(0.6f)), thing = plain_material({0.7f, 0.4f, 0.2f}), cut = thing;
@@ -116,7 +116,7 @@ TEST_F(CastersTest, WhatThrowsNoShadowIsSeenAndDarkensNothingInAnyRecipe) {
         }
 }
 
-// Whatever throws shadows is in shadow maps, and nothing else: counted by the device, and predicted without one.
+// Whatever casts shadows is in shadow maps, and nothing else: counted by the device, and predicted without one.
 TEST_F(CastersTest, OnlyCastersAreDrawnAndPredicted) {
   for (const Cull cull : {Cull::none, Cull::light_frustum}) {
     const Recipe recipe = recipe_with(Select::per_light, cull, Filter::hard, Deliver::inlined, Lookup::tiles);

@@ -53,7 +53,7 @@ class Scene {
   void filter_textures();
   /// Adds a mesh, in batches of up to 128 triangles, placed by a matrix that may mirror.
   void add(const Mesh& mesh, uint32_t material, const glm::mat4& world_from_local = glm::mat4(1.0f));
-  /// What was added last throws no shadow.
+  /// What was added last casts no shadow.
   void take_shadow() { contents_.instances.back().shadowless = 1; }
   /// As a pack's.
   pack::Contents contents() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights without shadow against the same lights in a frame in which nothing throws a shadow.
+// Lights without shadow against the same lights in a frame in which nothing casts a shadow.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr uint32_t width = 96, height = 72;
 
 enum Lamps : uint32_t { first = 1, second = 2, all = 3 };
 
-// A floor under a box, and lamps above: those of the first kind throw shadows, those of the second only if so told.
+// A floor under a box, and lamps above: those of the first kind cast shadows, those of the second only if so told.
 pack::File boxed_floor(Lamps kinds, uint32_t second_shadowless) {
   constexpr uint32_t lamps = 6;
   Scene scene;
@@ -64,7 +64,7 @@ class ShadowlessTest : public GpuTest {
     const FrameStats stats = renderer.draw(settings);
     return {renderer.read_back(), stats};
   }
-  // The second kind's light where nothing is in its way, of lamps that could throw shadows.
+  // The second kind's light where nothing is in its way, of lamps that could cast shadows.
   Picture lit_everywhere() {
     return frame(boxed_floor(second, 0), recipe_with(Select::per_light, Filter::rays, Deliver::textures, Lookup::tiles))
         .picture;

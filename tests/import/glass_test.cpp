@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_materials_transmission: what lets light through throws no shadow, and what else does.
+// KHR_materials_transmission: what lets light through casts no shadow, and what else does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ Baked bake_with(const GltfBuilder& gltf, bool glass_shadows = false) {
   return out;
 }
 
-/// How many of the drawn triangles throw a shadow, and how many do not.
+/// How many of the drawn triangles cast a shadow, and how many do not.
 std::pair<std::uint32_t, std::uint32_t> casting(const pack::Contents& pack) {
   std::pair<std::uint32_t, std::uint32_t> out;
   for (const pack::Batch& batch : pack.batches) {

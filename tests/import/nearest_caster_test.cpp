@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the nearest triangle is that throws a shadow, which shadow maps take their near plane from.
+// How far the nearest triangle is that casts a shadow, which shadow maps take their near plane from.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -216,7 +216,7 @@ TEST(PackRays, AgreeWithEmbreeWithoutHierarchies) {
   expect_agreement(pack::view_of(pack), 1000, 5);
 }
 
-// Two balls, one within the other, which throws no shadow: by its instance, by its material, and found without trees.
+// Two balls, one within the other, which casts no shadow: by its instance, by its material, and found without trees.
 TEST(PackRays, PassWhatThrowsNoShadowWhereTheyAskForCasters) {
   for (const int way : {0, 1, 2, 3}) {
     SCOPED_TRACE(way);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far a picture is from what it should be, in numbers and as a picture. Pictures are linear, f4 (height, width, 3), the
+"""The difference of a picture from its reference, in numbers and as a picture. Pictures are linear, f4 (height, width, 3), the
 top row first."""
 
 import re

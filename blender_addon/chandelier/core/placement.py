@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where lights go: along lines, around things, apart from each other. Points are arrays (n, 3), metres; the same seed gives the
+"""Positions for lights: along lines, around objects, with a minimum distance. Points are arrays (n, 3), metres; the same seed gives the
 same points."""
 
 import math

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the overlay draws of a selection of shadow maps, as arrays of points and line segments with their colours."""
+"""The overlay's drawing of a selection of shadow maps: arrays of points and line segments with their colours."""
 
 import colorsys
 import zlib

@@ -31,7 +31,7 @@ def program_name(tool):
 
 
 def make_executable(folder):
-    """Blender unpacks a zip without its files' permissions. What may not be changed stays as it is, and is not found."""
+    """Blender unpacks a zip without its files' permissions, so sets them. A file whose permissions cannot be changed is not found."""
     for path in pathlib.Path(folder).glob("chandelier-*"):
         if path.is_file() and not os.access(path, os.X_OK):
             with contextlib.suppress(OSError):
