@@ -271,7 +271,7 @@ class Schema:
         return next(c.value for c in self.constants if c.name == name)
 
     def canonical(self):
-        """What the hash is taken of: everything that says how bytes are read, nothing that only explains."""
+        """The input of the hash: everything that determines how bytes are read, no comments."""
         lines = [f"schema {self.name} {self.version}"]
         lines += [f"constant {c.name} {c.type} {c.value}" for c in self.constants]
         for enum in self.enums:

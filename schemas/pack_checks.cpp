@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of a pack that one field alone cannot break.
+// The rules of a pack that concern more than one field.
 #include "pack_checks.h"
 
 #include <algorithm>
@@ -153,7 +153,7 @@ std::string check(const View& view, std::size_t most_threads) {
   if (view.indices.size() % 3 != 0) {
     return "indices: " + text(view.indices.size()) + " records are not a multiple of 3";
   }
-  // Each of these reads what the rules above vouch for; the first fault in this order is told.
+  // Each of these relies on the rules above; the first fault in this order is returned.
   const std::function<std::string()> rules[] = {
       [&] { return first_fault("batches", view.batches); },
       [&] { return first_fault("batch_instances", view.batch_instances); },

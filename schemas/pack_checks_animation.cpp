@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nodes, animations and skins: what a player that evaluates them relies on, so that it ends and reads nothing wild.
+// Nodes, animations and skins: the rules that let a player evaluate them without endless loops or wild reads.
 #include "pack_checks_animation.h"
 
 #include <algorithm>
@@ -89,8 +89,8 @@ std::uint32_t joints_asked(const SkinVertex& vertex) {
   return end;
 }
 
-/// The same of each mesh. Meshes may share skin vertices, so each vertex is looked at once for all of them: meshes are
-/// taken by where they end, and of the vertices before only those wait that ask for more than all after them.
+/// The same of each mesh. Meshes may share skin vertices, so each vertex is read once for all of them: meshes are
+/// sorted by their end, and only vertices whose maximum exceeds all later ones are kept.
 std::vector<std::uint32_t> joints_asked_by_meshes(const View& view) {
   const auto end_of = [](const Mesh& mesh) { return std::size_t{mesh.first_skin_vertex} + mesh.skin_vertex_count; };
   std::vector<std::uint32_t> order(view.meshes.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of the hierarchies over batches, instances and triangles that one field alone cannot break.
+// The rules between fields of the hierarchies over batches, instances and triangles.
 //
 // That a section of nodes is a tree follows from what each node says about its children, by induction: a root's range
 // is known, and an inner node's range is itself and the ranges of its two children. So nothing here goes down a tree,

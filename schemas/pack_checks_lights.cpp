@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of lights and their hierarchy that one field alone cannot break.
+// The rules between fields of lights and their hierarchy.
 #include "pack_checks_lights.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of the voxel sections that one field alone cannot break.
+// The rules between fields of the voxel sections.
 #include "pack_checks_voxels.h"
 
 #include <algorithm>

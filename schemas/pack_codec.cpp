@@ -17,8 +17,9 @@
 namespace chandelier::pack {
 namespace {
 
-// Levels of zstd. Records are few and read by many, so they get the highest one that needs no special memory; image
-// data and text are many and gain little. Layouts are chosen on a sample with a level that ranks them alike.
+// Levels of zstd. Records are few and compress well, so they get the highest level that needs no special memory; image
+// data and text are large and gain little. Layouts are compared on a sample, with a faster level that ranks them the
+// same.
 constexpr int record_level = 19, byte_level = 9, trial_level = 9;
 constexpr std::size_t sample_bytes = std::size_t{1} << 18;
 
@@ -69,7 +70,7 @@ std::span<const std::uint32_t> words_of(Bytes bytes) {
 
 // ---- Encoding
 
-/// A section on its way to be stored.
+/// A section that is being encoded.
 struct Coding {
   std::size_t section;  // of section_infos
   Bytes records;
@@ -85,7 +86,7 @@ bool holds_corners(const Coding& coding) {
   return (kind == Section::indices || kind == Section::voxel_indices) && coding.records.size() % (3 * word) == 0;
 }
 
-/// Finds what makes a sample from the middle smallest.
+/// Finds the codec that makes a sample from the middle smallest.
 void choose_codec(Coding& coding) {
   if (coding.stride % word != 0) return;
   const auto cost = [](Bytes coded) { return compress(coded, trial_level).size(); };
@@ -134,7 +135,7 @@ void fill_up(std::vector<std::byte>& stored, std::size_t bytes) {
   std::memcpy(&stored[at], head, filler_head);
 }
 
-/// Raw where the codec saves too little.
+/// Falls back to raw if the codec saves too little.
 Encoded encoded_of(const Coding& coding) {
   Encoded encoded{coding.codec, {}};
   for (const auto& frame : coding.frames) encoded.bytes.insert(encoded.bytes.end(), frame.begin(), frame.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records rearranged so that zstd finds more to save: what a section with the codec columns holds before zstd.
+// Records rearranged so that zstd compresses them better: the content of sections with the codec columns, before zstd.
 #pragma once
 
 #include <cstddef>

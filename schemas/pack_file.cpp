@@ -62,7 +62,7 @@ struct FileLayout {
   std::vector<std::span<const std::byte>> sections;
 };
 
-/// Where all goes, without checksums. `encoded` has one entry for each of section_infos, or is empty.
+/// The file's layout, without checksums. `encoded` has one entry for each of section_infos, or is empty.
 FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
   FileLayout layout;
   for (std::size_t i = 0; i < section_infos.size(); ++i) {
@@ -91,7 +91,7 @@ FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
   return layout;
 }
 
-/// The sections first, some at a time, then what holds their checksums. Returns the file's size.
+/// Writes the sections first, several at a time, then the table with their checksums. Returns the file's size.
 std::uint64_t write_all(TemporaryFile& file, const View& view, Compression compression, std::size_t most_threads) {
   std::vector<Encoded> encoded;
   if (compression == Compression::smallest) encoded = encode_sections(view, most_threads);
@@ -111,7 +111,7 @@ std::uint64_t write_all(TemporaryFile& file, const View& view, Compression compr
 
 // ---- Reading
 
-/// Of a file, or what it holds now; MAP_FAILED and errno where that cannot be.
+/// Maps a file, or copies its present content; MAP_FAILED and errno on failure.
 void* map_bytes(int descriptor, std::size_t size, Hold hold) {
   if (hold == Hold::mapped) return mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
   void* const data = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -219,8 +219,8 @@ std::string in_section(const Found& found, const std::string& line) {
   return found.place + line + " (section " + std::string(section_infos[found.info].name) + ")";
 }
 
-/// Checks the table. Sections follow each other as the writer lays them out, each at the next multiple of the
-/// alignment, so none can overlap and every byte of the file is one that something checks.
+/// Checks the table. Sections must follow each other as the writer lays them out, each at the next multiple of the
+/// alignment. So none can overlap, and every byte of the file is covered by a check.
 std::string table_fault(std::span<const std::byte> file, std::span<const SectionEntry> table,
                         std::vector<Found>& sections) {
   std::uint64_t end = sizeof(FileHeader) + table.size_bytes();

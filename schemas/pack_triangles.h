@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Corners of triangles in meshoptimizer's index code: what a section with the codec triangles holds before zstd.
+// Corners of triangles in meshoptimizer's index code: the content of sections with the codec triangles, before zstd.
 #pragma once
 
 #include <cstddef>

@@ -38,7 +38,7 @@ class Answer:
 
 
 class Choice:
-    """What a stage and a setting with named values share: a C++ enum, its answers, one of which is the default."""
+    """The common part of a stage and of a setting with named values: a C++ enum with answers, one of them the default."""
 
     def __init__(self, element, name, enum):
         self.name, self.enum = name, check_name(enum, CAMEL, name)
@@ -118,7 +118,7 @@ class Setting:
 
     @property
     def title(self):
-        """What messages call it: as it is typed, where it can be."""
+        """Its name in messages: the option's, if it has one."""
         return self.option or self.name
 
 

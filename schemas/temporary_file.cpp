@@ -38,7 +38,8 @@ bool has_name(int descriptor) {
   return fstat(descriptor, &status) == 0 && status.st_nlink > 0;
 }
 
-/// Makes the rename durable. The file is in place and whole by now, so a file system that cannot do this is no failure.
+/// Makes the rename durable. The file is complete and in place, so it is not an error if the file system cannot do
+/// this.
 void sync_folder(const std::filesystem::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -66,7 +67,7 @@ bool TemporaryFile::create(const std::filesystem::path& folder) {
   if (descriptor_ < 0 && errno == EEXIST) return false;
   if (descriptor_ < 0) fail_system(path_, "cannot create a file in its folder", errno);
   temporary_ = candidate;
-  // A file system without locks has no sweep either: it cannot lock what it would delete.
+  // On a file system without locks nothing is deleted either, since that needs a lock.
   if (flock(descriptor_, LOCK_EX) != 0 || has_name(descriptor_)) return true;
   close(std::exchange(descriptor_, -1));
   return false;

@@ -55,7 +55,7 @@ def hidden_by_solo(context):
 
 
 def forget_hidden(context):
-    """Those of the view layer, and of any that is no more."""
+    """Those of the view layer, and of view layers that no longer exist."""
     kept, layers = context.scene.chandelier.hidden_by_solo, context.scene.view_layers
     for number in reversed(range(len(kept))):
         if kept[number].view_layer == context.view_layer.name or kept[number].view_layer not in layers:

@@ -37,7 +37,7 @@ class OverlaySettings(bpy.types.PropertyGroup):
 
 
 class Overlay:
-    """What was last built, and from what."""
+    """The last arrays, and the inputs that they were built from."""
 
     def __init__(self):
         self.handles, self.key, self.batches, self.labels = [], None, [], NO_LABELS

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The selection of shadow maps of the scene as it is now, made again only when something changed."""
+"""The selection of shadow maps of the present scene, computed again only when something changed."""
 
 import time
 
@@ -10,7 +10,7 @@ from .core import bill, clusters
 
 
 class Preview:
-    """Reads the lights and selects, lazily: handlers only say that something may have changed."""
+    """Reads the lights and selects lazily: handlers only note that something may have changed."""
 
     def __init__(self):
         self.engine, self.folders, self.error = None, None, ""
@@ -18,7 +18,7 @@ class Preview:
         self.forget()
 
     def forget(self):
-        """After undo, redo and loading, when Blender's pointers mean something else."""
+        """Call after undo, redo and loading, when Blender's pointers are no longer valid."""
         self.reader, self.table, self.selection, self.asked = scene_lights.LightReader(), None, None, None
         self.place = None  # the scene and view layer that all this is of
         self.is_stale = True  # the table; it stays the selection's until that is made again
@@ -67,7 +67,7 @@ PREVIEW = Preview()
 
 
 def bill_lines(context):
-    """What a glance must tell: texts, and whether each is bad news."""
+    """The lines of the bill: texts, and whether each is a warning."""
     found = PREVIEW.update(context)
     if PREVIEW.error:
         return [(PREVIEW.error, True)]

@@ -61,7 +61,7 @@ def cycles_switch(light):
 
 
 def casts_shadow(light):
-    """Not where it is switched off for EEVEE, or for Cycles where that has a switch of its own."""
+    """False if it is switched off for EEVEE, or for Cycles where that has a switch of its own."""
     cycles = cycles_switch(light)
     return light.use_shadow and (cycles is None or cycles.cast_shadow)
 
@@ -75,7 +75,7 @@ def set_shadow(light, shadow):
 
 
 def record_of(light, groups):
-    """A light's row of light_table.DATA; None of one that glTF has not, or that is dark. `groups`: name -> number, grows."""
+    """A light's row of light_table.DATA; None for a type that glTF does not have, or without power. `groups`: name -> number, grows."""
     kind = KINDS.get(light.type)
     if kind is None:
         return None
@@ -109,7 +109,7 @@ class LightReader:
         self.table, self.places, self.instances = None, [], 0
 
     def note(self, depsgraph):
-        """Takes in what a depsgraph says it has updated. True where a table read before it is no longer right."""
+        """Notes what a depsgraph has updated. True if the last table is out of date."""
         moved = False
         for update in depsgraph.updates:
             thing = update.id

@@ -29,7 +29,7 @@ def constant(shader, *names):
 
 
 def is_glass(material):
-    """Whether the baker will let light pass it. What textures say is not known here."""
+    """Whether the baker will treat it as glass. Textures are not read here."""
     nodes = material.node_tree.nodes if material.use_nodes and material.node_tree else ()
     shader = next((node for node in nodes if node.type == "BSDF_PRINCIPLED"), None)
     if shader is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shape keys come out as they are seen.
+"""Exports shape keys in their visible shape.
 
 The exporter writes the basis, the other keys as morph targets and their values as weights, and so loses what a vertex group limits,
 what is relative to another key, pinned or absolute, and modifiers that only deform. A mesh that a modifier has made anew it writes as
@@ -29,7 +29,7 @@ def is_made_anew(thing, depsgraph):
 
 @contextlib.contextmanager
 def exported_as_seen(depsgraph):
-    """While it lasts. Gives the names of other files' objects, which cannot be helped."""
+    """A context. Yields the names of objects of other files, which cannot be changed."""
     keyed = {instance.object.original: True for instance in depsgraph.object_instances
              if instance.object.type == "MESH" and instance.object.original.data.shape_keys}
     odd = [thing for thing in keyed if not has_plain_keys(thing) and not is_made_anew(thing, depsgraph)]
