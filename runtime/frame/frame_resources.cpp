@@ -81,8 +81,8 @@ size_t light_count(const FramePlan& plan) {
   return plan.list.lights.size() + plan.list.shadowless.size();
 }
 
-void make_room(const gpu::Device& device, const GpuScene& scene, const RenderSettings& settings, const FramePlan& plan,
-               FrameSlot& slot, FrameResources& resources) {
+void make_room(const gpu::Device& device, const RenderSettings& settings, const FramePlan& plan, FrameSlot& slot,
+               FrameResources& resources) {
   Targets& targets = resources.targets;
   if (targets.width != settings.width || targets.height != settings.height) {
     slot.retired.add(std::exchange(targets, {}));
@@ -96,9 +96,9 @@ void make_room(const gpu::Device& device, const GpuScene& scene, const RenderSet
   make_visibility(device, settings, needs.visibility_bytes, plan.recipe.filter == Filter::rays, slot,
                   resources.visibility);
   make_store(device, settings.recipe, needs.cubes, slot, resources);
-  const uint64_t draws = uint64_t{needs.views} * scene.batch_instance_count;
-  if (resources.shadow_draws.capacity < draws || !resources.shadow_draws.draws.handle)
-    slot.retired.add(std::exchange(resources.shadow_draws, make_draw_lists(device, scene, draws)));
+  make_room(device, {.most_draws = UINT32_MAX, .one_pass = true}, slot.retired, resources.camera_draws);
+  make_room(device, {.maps = needs.cubes, .views = needs.views, .most_draws = settings.most_caster_draws}, slot.retired,
+            resources.shadow_draws);
   make_counters(device, plan.rounds.size(), slot, resources.counters);
 }
 

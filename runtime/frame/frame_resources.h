@@ -36,8 +36,8 @@ struct FrameResources {
   gpu::Buffer luminance_sums;
   CubeArray store;
   bool store_is_new = false;  // in no layout yet
-  DrawLists camera_draws;
-  DrawLists shadow_draws;
+  CullState camera_draws;
+  CullState shadow_draws;
   gpu::Streamed view, lights, maps, views;
   TileLists tiles;
   gpu::Buffer visibility;
@@ -49,7 +49,7 @@ size_t light_count(const FramePlan& plan);
 
 /// Makes what the frame needs; what is there already and large enough is kept, and what is replaced is retired with the
 /// slot. Throws gpu::Error.
-void make_room(const gpu::Device& device, const GpuScene& scene, const RenderSettings& settings, const FramePlan& plan,
-               FrameSlot& slot, FrameResources& resources);
+void make_room(const gpu::Device& device, const RenderSettings& settings, const FramePlan& plan, FrameSlot& slot,
+               FrameResources& resources);
 
 }  // namespace chandelier

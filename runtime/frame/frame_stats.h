@@ -31,6 +31,7 @@ struct FrameStats {
   uint64_t shadow_bytes = 0;              // depth that all shadow maps of the frame need together
   uint64_t shadow_pool_bytes = 0;         // depth held at a time
   uint64_t shadow_rounds = 0;             // how often the pool was filled
+  uint64_t shadow_overflow_passes = 0;    // further passes over groups of maps, whose draws did not fit their buffer
   uint64_t visibility_bytes = 0;          // that all visibility textures of the frame need together
   uint64_t visibility_pool_bytes = 0;     // of them, held at a time
   std::vector<uint32_t> centers;          // for each light of the world whose shadow map it took; pack::none: none

@@ -9,6 +9,7 @@
 
 #include "frame/recipe.h"
 #include "frame/visibility_query.h"
+#include "shadows/cull/draw_lists.h"
 #include "view/camera.h"
 
 namespace chandelier {
@@ -23,7 +24,8 @@ struct RenderSettings {
   std::optional<float> exposure_ev;        // stops; absent: from the picture's own brightness
   std::vector<uint32_t> previous_centers;  // FrameStats::centers of the frame before, where the recipe has stability
   std::vector<uint32_t> centers;           // whose map each light of the world takes; pack::none, or empty: as selected
-  bool lights_out_of_view = false;         // are selected too, as for a camera that looks everywhere
+  uint64_t most_caster_draws = chandelier::most_caster_draws;  // kept at a time; what exceeds them takes more passes
+  bool lights_out_of_view = false;  // are selected too, as for a camera that looks everywhere
   /// Select error-driven: a new view's search runs in a thread, and frames go on with the last answer until it ends
   /// (Renderer::has_new_selection()). Else draw() waits for it.
   bool search_beside_frames = false;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <map>
 
 #include "frame/frame_resources.h"
 #include "frame/ray_visibility.h"
@@ -82,7 +83,8 @@ struct Renderer::Impl {
   const World& world;
   Surroundings surroundings;
   GpuScene scene;
-  CullPipelines cull;
+  CullPipelines camera_cull;
+  std::map<Cull, CullPipelines> cull;  // made when first needed
   CasterPipelines casters;
   gpu::Pipeline g_buffer;
   TilePipeline tile_pipeline;
@@ -97,13 +99,14 @@ struct Renderer::Impl {
         world(of),
         surroundings(of),
         scene(upload_scene(on, of, {anisotropy_on(on, options), options.upload_progress})),
-        cull(make_cull_pipelines(on)),
+        camera_cull(make_cull_pipelines(on, Cull::light_frustum, true)),
         casters(make_caster_pipelines(on, scene)),
         g_buffer(make_g_buffer_pipeline(on, scene)),
         tile_pipeline(make_tile_pipeline(on)),
         shade(make_shade_pipelines(on)),
         tone(make_tone_pipelines(on)) {
-    resources.camera_draws = make_draw_lists(on, scene, scene.batch_instance_count);
+    resources.camera_draws = make_cull_state(on, lists_by_material(of.pack()));
+    resources.shadow_draws = make_cull_state(on, lists_for_shadows(of.pack()));
     for (uint32_t i = 0; i < std::max(1u, options.frames_in_flight); ++i) slots.emplace_back(on);
   }
 
@@ -129,12 +132,11 @@ bool Renderer::Impl::has_planned(const RenderSettings& settings) const {
 }
 
 void Renderer::Impl::plan(const RenderSettings& settings) {
-  const uint64_t batch_instances = std::max(1u, scene.batch_instance_count);
   planned.is_there = false;
   planned.plan =
       plan_frame(world, settings,
                  {.maps = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes),
-                  .views = most_draws_of_round / batch_instances,
+                  .views = most_views(scene.batch_instance_count, settings.most_caster_draws),
                   .visibility_bytes = device.limits.maxStorageBufferRange},
                  &surroundings);
   planned.stats = planned_stats(world, planned.plan, settings);
@@ -146,7 +148,7 @@ void Renderer::Impl::plan(const RenderSettings& settings) {
 // Takes the plan and makes room for it. The frame that used the slot has finished.
 Recording Renderer::Impl::prepare(gpu::Commands cmd, FrameSlot& slot, const RenderSettings& settings) {
   slot.reset();
-  make_room(device, scene, settings, planned.plan, slot, resources);
+  make_room(device, settings, planned.plan, slot, resources);
   slot.stats = planned.stats;
   slot.rounds = planned.plan.rounds.size();
   slot.is_read = false;
@@ -182,15 +184,15 @@ void Renderer::Impl::record_start(const Recording& frame) {
   slot.timers.add_cpu("project", plan.project_ms);
   {
     const Timed timed(frame, "g-buffer");
-    record_cull(cmd, device, cull[Cull::light_frustum], scene,
-                {.views = resources.views.buffer(),
-                 .counters = resources.counters,
-                 .first_view = static_cast<uint32_t>(plan.views.size() - 1),
-                 .view_count = 1,
-                 .merged_runs = 1,
-                 .round = static_cast<uint32_t>(plan.rounds.size()),
-                 .keep_order = true},
-                resources.camera_draws);
+    const CullInput camera{.views = resources.views.buffer(),
+                           .maps = resources.maps.buffer(),
+                           .counters = resources.counters,
+                           .first_map = static_cast<uint32_t>(plan.views.size() - 1),
+                           .map_count = 1,
+                           .view_count = 1,
+                           .group = static_cast<uint32_t>(plan.rounds.size())};
+    record_boxes(cmd, device, camera_cull, scene, camera, resources.camera_draws);
+    record_cull(cmd, device, camera_cull, scene, camera, resources.camera_draws);
     record_g_buffer(cmd, g_buffer, scene, resources.camera_draws, resources.view.buffer(), resources.targets);
   }
   if (plan.recipe.lookup != Lookup::tiles) return;
@@ -203,21 +205,30 @@ void Renderer::Impl::record_start(const Recording& frame) {
 void Renderer::Impl::record_shadow_maps(const Recording& frame, uint32_t number) {
   const auto& [cmd, slot, settings, plan] = frame;
   const Round& round = plan.rounds[number];
+  const Cull answer = plan.recipe.cull;
+  if (!cull.contains(answer)) cull.emplace(answer, make_cull_pipelines(device, answer, false));
+  const CullPipelines& culling = cull.at(answer);
+  const CullState& culled = resources.shadow_draws;
+  const CullInput input{.views = resources.views.buffer(),
+                        .maps = resources.maps.buffer(),
+                        .counters = resources.counters,
+                        .first_map = round.first_map,
+                        .map_count = round.map_count,
+                        .view_count = round.view_count,
+                        .group = number};
+  uint32_t passes = 1;
   {
     const Timed timed(frame, "cull");
-    record_cull(cmd, device, cull[plan.recipe.cull], scene,
-                {.views = resources.views.buffer(),
-                 .counters = resources.counters,
-                 .first_view = round.first_view,
-                 .view_count = round.view_count,
-                 .merged_runs = std::max(1u, scene.opaque_runs),
-                 .round = number,
-                 .casters_only = true},
-                resources.shadow_draws);
+    if (number == 0) record_boxes(cmd, device, culling, scene, input, culled);
+    passes = record_cull(cmd, device, culling, scene, input, culled);
   }
   const Timed timed(frame, "rasterize");
-  record_casters(cmd, casters, scene, resources.shadow_draws, resources.views.buffer(), round.view_count,
-                 resources.store, round.map_count);
+  begin_casters(cmd, resources.store);
+  for (uint32_t pass = 0; pass < passes; ++pass) {
+    if (pass > 0) record_append(cmd, culling, scene, input, culled, pass);
+    record_casters(cmd, casters, scene, culled, input.views, resources.store, round.map_count, pass);
+  }
+  end_casters(cmd, resources.store);
 }
 
 // Adds the light of a round's lights. Where visibility comes from rays it is in `visibility` already.
@@ -332,7 +343,8 @@ const FrameStats& Renderer::Impl::read_stats(FrameSlot& slot) {
     frame::CullCounters round;
     std::memcpy(&round, slot.counters.mapped + i * sizeof round, sizeof round);
     stats.shadow_draws += round.draws;
-    stats.shadow_triangles += round.triangles;
+    stats.shadow_triangles += round.triangles + (uint64_t{round.triangles_high} << 32);
+    stats.shadow_overflow_passes += round.further_passes;
   }
   return stats;
 }
@@ -384,7 +396,7 @@ void Renderer::warm_up(const RenderSettings& settings) {
   draw(tiny);
   impl_->plan(settings);
   FrameSlot& slot = impl_->slots.front();
-  make_room(impl_->device, impl_->scene, settings, impl_->planned.plan, slot, impl_->resources);
+  make_room(impl_->device, settings, impl_->planned.plan, slot, impl_->resources);
   slot.reset();
 }
 

@@ -20,9 +20,6 @@ struct Round {
   uint64_t visibility_bytes;  // of all its maps' visibility textures
 };
 
-/// Of a round, unless one light alone needs more: 32 MiB of CasterDraw.
-constexpr uint64_t most_draws_of_round = uint64_t{1} << 20;
-
 /// What a round may hold at most. A single map may exceed all but the first.
 struct RoundLimits {
   uint32_t maps = 1;

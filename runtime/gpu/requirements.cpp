@@ -81,7 +81,7 @@ std::vector<NeededLimit> needed_limits(const VkPhysicalDeviceLimits& limits) {
           {"maxComputeWorkGroupSize[1]", 16, limits.maxComputeWorkGroupSize[1]},
           {"maxDrawIndirectCount", 65536, limits.maxDrawIndirectCount},
           {"maxBoundDescriptorSets", 2, limits.maxBoundDescriptorSets},
-          {"maxPerStageDescriptorStorageBuffers", 8, limits.maxPerStageDescriptorStorageBuffers},
+          {"maxPerStageDescriptorStorageBuffers", 14, limits.maxPerStageDescriptorStorageBuffers},
           {"maxPushConstantsSize", 128, limits.maxPushConstantsSize},
           {"maxFramebufferLayers", 6, limits.maxFramebufferLayers},
           {"maxImageArrayLayers", 6, limits.maxImageArrayLayers}};

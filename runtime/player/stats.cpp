@@ -24,6 +24,7 @@ constexpr std::array all_counters{
     Counter{"shadow_bytes", &FrameStats::shadow_bytes, true},
     Counter{"shadow_pool_bytes", &FrameStats::shadow_pool_bytes, true},
     Counter{"shadow_rounds", &FrameStats::shadow_rounds, false},
+    Counter{"shadow_overflow_passes", &FrameStats::shadow_overflow_passes, false},
     Counter{"visibility_bytes", &FrameStats::visibility_bytes, true},
     Counter{"visibility_pool_bytes", &FrameStats::visibility_pool_bytes, true},
 };

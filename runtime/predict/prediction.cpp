@@ -14,11 +14,12 @@ namespace {
 constexpr uint64_t most_layers = 2048;
 constexpr uint64_t most_visibility_bytes = uint64_t{128} << 20;
 
-// A device may allow less: then the frame takes more passes over groups of maps, and holds less at a time, which changes no other counter.
-RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe) {
+// A device may allow less: then the frame takes more passes over groups of maps, and holds less at a time, which
+// changes no other counter.
+RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe, uint64_t most_draws) {
   const uint64_t cubes = recipe.shadow_budget_bytes / cube_bytes(recipe.face_size_px);
   return {.maps = static_cast<uint32_t>(std::clamp<uint64_t>(cubes, 1, most_layers / 6)),
-          .views = most_draws_of_round / std::max<uint64_t>(1, pack.batch_instances.size()),
+          .views = most_views(pack.batch_instances.size(), most_draws),
           .visibility_bytes = most_visibility_bytes};
 }
 
@@ -26,7 +27,9 @@ RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe) 
 
 Prediction Predictor::plan(const RenderSettings& settings) {
   Prediction prediction;
-  prediction.plan = plan_frame(world_, settings, limits_without_device(world_.pack(), settings.recipe), &surroundings_);
+  prediction.plan =
+      plan_frame(world_, settings, limits_without_device(world_.pack(), settings.recipe, settings.most_caster_draws),
+                 &surroundings_);
   prediction.stats = planned_stats(world_, prediction.plan, settings);
   return prediction;
 }
@@ -50,9 +53,14 @@ double Predictor::expected_rmse(const RenderSettings& settings, const FramePlan&
 Prediction Predictor::predict(const RenderSettings& settings) {
   Prediction prediction = plan(settings);
   const std::span<const frame::ShadowView> views(prediction.plan.views);
-  const CasterCounts counts = count_casters(settings.recipe.cull, views.first(prediction.stats.shadow_views), world_);
+  std::vector<ViewGroup> groups;
+  for (const Round& round : prediction.plan.rounds)
+    if (round.view_count > 0) groups.push_back({round.first_view, round.view_count});
+  const CasterCounts counts = count_casters(settings.recipe.cull, views.first(prediction.stats.shadow_views), groups,
+                                            settings.most_caster_draws, world_);
   prediction.stats.shadow_draws = counts.draws;
   prediction.stats.shadow_triangles = counts.triangles;
+  prediction.stats.shadow_overflow_passes = counts.further_passes;
   return prediction;
 }
 

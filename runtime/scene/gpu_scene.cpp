@@ -3,9 +3,7 @@
 
 #include <algorithm>
 
-#include "frame_schema.h"
 #include "scene/textures.h"
-#include "throws_shadow.h"
 
 namespace chandelier {
 namespace {
@@ -33,36 +31,6 @@ uint64_t bytes_of(const pack::View& pack) {
          pack.batches.size_bytes() + pack.batch_instances.size_bytes() + pack.image_data.size_bytes();
 }
 
-std::vector<MaterialRun> find_runs(const pack::View& pack) {
-  std::vector<MaterialRun> runs;
-  for (uint32_t i = 0; i < pack.batch_instances.size(); ++i) {
-    const uint32_t material = pack.batches[pack.batch_instances[i].batch].material;
-    if (runs.empty() || runs.back().material != material) runs.push_back({material, i, 0});
-    ++runs.back().count;
-  }
-  return runs;
-}
-
-void upload_runs(Uploads& upload, const pack::View& pack, GpuScene& scene) {
-  scene.runs = find_runs(pack);
-  const auto masked = [&](const MaterialRun& run) {
-    return pack.materials[run.material].alpha_mode == pack::AlphaMode::mask;
-  };
-  scene.opaque_runs =
-      static_cast<uint32_t>(std::find_if(scene.runs.begin(), scene.runs.end(), masked) - scene.runs.begin());
-  std::vector<uint32_t> first_of_run;
-  std::vector<uint32_t> run_of_batch_instance;
-  for (const MaterialRun& run : scene.runs) {
-    run_of_batch_instance.insert(run_of_batch_instance.end(), run.count, static_cast<uint32_t>(first_of_run.size()));
-    first_of_run.push_back(run.first);
-  }
-  for (size_t i = 0; i < run_of_batch_instance.size(); ++i)
-    if (!throws_shadow(pack, pack.batch_instances[i])) run_of_batch_instance[i] |= frame::shadowless_bit;
-  scene.material_runs = upload(std::span<const uint32_t>(first_of_run), storage_use, "material runs");
-  scene.run_of_batch_instance =
-      upload(std::span<const uint32_t>(run_of_batch_instance), storage_use, "batch instances");
-}
-
 }  // namespace
 
 GpuScene upload_scene(const gpu::Device& device, const World& world, const UploadOptions& options) {
@@ -78,7 +46,6 @@ GpuScene upload_scene(const gpu::Device& device, const World& world, const Uploa
   scene.materials = upload(pack.materials, storage_use, "materials");
   scene.uv_transforms = upload(std::span<const glm::vec3>(uv_rows(pack)), storage_use, "texture transforms");
   scene.batch_instance_count = static_cast<uint32_t>(pack.batch_instances.size());
-  upload_runs(upload, pack, scene);
   for (const pack::Material& material : pack.materials) scene.double_sided.push_back(material.double_sided != 0);
   upload_textures(device, upload.uploader, pack, options.anisotropy, scene);
   upload.uploader.finish();

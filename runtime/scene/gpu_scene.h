@@ -11,13 +11,6 @@
 
 namespace chandelier {
 
-/// Batch instances [first, first + count) share one material: one indirect draw.
-struct MaterialRun {
-  uint32_t material;
-  uint32_t first;
-  uint32_t count;
-};
-
 struct GpuScene {
   gpu::Buffer positions;          // vertex stream: pack Position
   gpu::Buffer vertex_attributes;  // vertex stream: pack VertexAttributes
@@ -26,13 +19,9 @@ struct GpuScene {
   gpu::Buffer instances;
   gpu::Buffer batch_instances;
   gpu::Buffer materials;
-  gpu::Buffer uv_transforms;          // ten rows of three floats per material, two for each of its five textures
-  gpu::Buffer material_runs;          // pack order: first batch instance of each run
-  gpu::Buffer run_of_batch_instance;  // one u32 each, with frame::shadowless_bit
+  gpu::Buffer uv_transforms;  // ten rows of three floats per material, two for each of its five textures
   uint32_t batch_instance_count = 0;
 
-  std::vector<MaterialRun> runs;
-  uint32_t opaque_runs = 0;        // the runs before the first masked one
   std::vector<bool> double_sided;  // per material
   std::vector<gpu::Image> images;  // the pack's, then one white texel
   std::vector<gpu::Owned<VkSampler>> samplers;

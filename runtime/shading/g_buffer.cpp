@@ -43,7 +43,7 @@ gpu::Pipeline make_g_buffer_pipeline(const gpu::Device& device, const GpuScene& 
                                               .depth = VK_FORMAT_D32_SFLOAT});
 }
 
-void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const DrawLists& lists,
+void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const CullState& culled,
                      const gpu::Buffer& view, const Targets& targets) {
   gpu::image_barrier(cmd, targets.surface, use::nothing, use::color_attachment);
   gpu::image_barrier(cmd, targets.radiance, use::nothing, use::color_attachment);
@@ -55,15 +55,16 @@ void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const Gpu
   cmd->vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
   gpu::bind(cmd, pipeline,
             {{"Views", gpu::storage(view)},
-             {"Draws", gpu::storage(lists.draws)},
+             {"Draws", gpu::storage(culled.draws)},
              {"Instances", gpu::storage(scene.instances)},
              {"Materials", gpu::storage(scene.materials)},
              {"UvTransforms", gpu::storage(scene.uv_transforms)}});
-  for (const DrawList& list : lists.by_material) {
+  for (size_t i = 0; i < culled.lists.size(); ++i) {
+    const DrawList& list = culled.lists[i];
     cmd->vkCmdSetCullMode(cmd, scene.double_sided[list.material] ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     cmd->vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 1, 1,
                                  &scene.material_sets[list.material], 0, nullptr);
-    draw_ordered_list(cmd, lists, list);
+    draw_list(cmd, culled, i, 0);
   }
   cmd->vkCmdEndRendering(cmd);
   gpu::image_barrier(cmd, targets.surface, use::color_attachment, use::sampled);

@@ -9,9 +9,9 @@ namespace chandelier {
 
 gpu::Pipeline make_g_buffer_pipeline(const gpu::Device& device, const GpuScene& scene);
 
-/// Draws what `lists` kept for the camera into surface, depth and radiance; leaves the first two ready to be sampled
-/// and radiance as a storage image.
-void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const DrawLists& lists,
+/// Draws what was culled for the camera, in order, into surface, depth and radiance; leaves the first two ready to be
+/// sampled and radiance as a storage image.
+void record_g_buffer(gpu::Commands cmd, const gpu::Pipeline& pipeline, const GpuScene& scene, const CullState& culled,
                      const gpu::Buffer& view, const Targets& targets);
 
 }  // namespace chandelier

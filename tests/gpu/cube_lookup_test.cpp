@@ -148,21 +148,27 @@ class CubeLookupTest : public GpuTest {
     const auto view_count = static_cast<uint32_t>(maps.views.size());
     maps.store = make_cube_array(device(), face_size_px, count);
 
-    const CullPipelines cull = make_cull_pipelines(device());
+    const CullPipelines cull = make_cull_pipelines(device(), Cull::light_frustum, false);
     const CasterPipelines casters = make_caster_pipelines(device(), scene);
-    const DrawLists draws = make_draw_lists(device(), scene, uint64_t{scene.batch_instance_count} * view_count);
+    CullState draws = make_cull_state(device(), lists_for_shadows(pack.view()));
+    gpu::Retired retired;
+    make_room(device(), {.maps = count, .views = view_count}, retired, draws);
+    const gpu::Buffer map_buffer = upload(maps.list.maps);
     const gpu::Buffer views = upload(maps.views);
     const gpu::Buffer counters = upload(std::vector<frame::CullCounters>(1));
     gpu::run_once(device(), [&](gpu::Commands cmd) {
-      record_cull(cmd, device(), cull[Cull::light_frustum], scene,
-                  {.views = views,
-                   .counters = counters,
-                   .first_view = 0,
-                   .view_count = view_count,
-                   .merged_runs = std::max(1u, scene.opaque_runs),
-                   .round = 0},
-                  draws);
-      record_casters(cmd, casters, scene, draws, views, view_count, maps.store, count);
+      const CullInput input{.views = views,
+                            .maps = map_buffer,
+                            .counters = counters,
+                            .first_map = 0,
+                            .map_count = count,
+                            .view_count = view_count,
+                            .group = 0};
+      record_boxes(cmd, device(), cull, scene, input, draws);
+      EXPECT_EQ(record_cull(cmd, device(), cull, scene, input, draws), 1u);
+      begin_casters(cmd, maps.store);
+      record_casters(cmd, casters, scene, draws, views, maps.store, count, 0);
+      end_casters(cmd, maps.store);
     });
     return maps;
   }

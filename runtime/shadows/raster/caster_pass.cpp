@@ -11,11 +11,11 @@
 namespace chandelier {
 namespace {
 
-void begin_pass(gpu::Commands cmd, const CubeArray& store, uint32_t cubes) {
+void begin_pass(gpu::Commands cmd, const CubeArray& store, uint32_t cubes, bool clear) {
   const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                         .imageView = store.depth.view,
                                         .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-                                        .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                        .loadOp = clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD,
                                         .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
                                         .clearValue = {.depthStencil = {0.0f, 0}}};
   const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
@@ -42,35 +42,45 @@ CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene&
                                                .depth = VK_FORMAT_D32_SFLOAT})};
 }
 
-void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const GpuScene& scene, const DrawLists& lists,
-                    const gpu::Buffer& views, uint32_t view_count, const CubeArray& store, uint32_t cubes) {
+void begin_casters(gpu::Commands cmd, const CubeArray& store) {
   gpu::image_barrier(cmd, store.depth, use::nothing, use::depth_attachment);
-  begin_pass(cmd, store, cubes);
+}
+
+void end_casters(gpu::Commands cmd, const CubeArray& store) {
+  gpu::image_barrier(cmd, store.depth, use::depth_attachment, use::sampled);
+}
+
+void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const GpuScene& scene, const CullState& culled,
+                    const gpu::Buffer& views, const CubeArray& store, uint32_t cubes, uint32_t pass) {
+  if (pass > 0) gpu::image_barrier(cmd, store.depth, use::depth_attachment, use::depth_attachment);
+  begin_pass(cmd, store, cubes, pass == 0);
   const VkBuffer streams[]{scene.positions.handle, scene.vertex_attributes.handle};
   const VkDeviceSize offsets[]{0, 0};
   cmd->vkCmdBindVertexBuffers(cmd, 0, 2, streams, offsets);
   cmd->vkCmdBindIndexBuffer(cmd, scene.indices.handle, 0, VK_INDEX_TYPE_UINT32);
-
-  const std::vector<DrawList>& draw_lists = lists.for_shadows;
-  gpu::bind(cmd, pipelines.opaque,
-            {{"Views", gpu::storage(views)},
-             {"Draws", gpu::storage(lists.draws)},
-             {"Instances", gpu::storage(scene.instances)}});
-  draw_list(cmd, lists, draw_lists[0], view_count);
-  if (draw_lists.size() > 1)
-    gpu::bind(cmd, pipelines.masked,
-              {{"Views", gpu::storage(views)},
-               {"Draws", gpu::storage(lists.draws)},
-               {"Instances", gpu::storage(scene.instances)},
-               {"Materials", gpu::storage(scene.materials)},
-               {"UvTransforms", gpu::storage(scene.uv_transforms)}});
-  for (size_t i = 1; i < draw_lists.size(); ++i) {
-    cmd->vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines.masked.layout, 1, 1,
-                                 &scene.material_sets[draw_lists[i].material], 0, nullptr);
-    draw_list(cmd, lists, draw_lists[i], view_count);
+  const gpu::Pipeline* bound = nullptr;
+  for (size_t i = 0; i < culled.lists.size(); ++i) {
+    const bool opaque = culled.lists[i].material == pack::none;
+    const gpu::Pipeline& pipeline = opaque ? pipelines.opaque : pipelines.masked;
+    if (&pipeline != bound && opaque)
+      gpu::bind(cmd, pipeline,
+                {{"Views", gpu::storage(views)},
+                 {"Draws", gpu::storage(culled.draws)},
+                 {"Instances", gpu::storage(scene.instances)}});
+    if (&pipeline != bound && !opaque)
+      gpu::bind(cmd, pipeline,
+                {{"Views", gpu::storage(views)},
+                 {"Draws", gpu::storage(culled.draws)},
+                 {"Instances", gpu::storage(scene.instances)},
+                 {"Materials", gpu::storage(scene.materials)},
+                 {"UvTransforms", gpu::storage(scene.uv_transforms)}});
+    bound = &pipeline;
+    if (!opaque)
+      cmd->vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 1, 1,
+                                   &scene.material_sets[culled.lists[i].material], 0, nullptr);
+    draw_list(cmd, culled, i, pass);
   }
   cmd->vkCmdEndRendering(cmd);
-  gpu::image_barrier(cmd, store.depth, use::depth_attachment, use::sampled);
 }
 
 }  // namespace chandelier

@@ -14,8 +14,12 @@ struct CasterPipelines {
 };
 CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene& scene);
 
-/// Clears the first `cubes` cubes of the store and draws into them; leaves the store ready to be sampled.
-void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const GpuScene& scene, const DrawLists& lists,
-                    const gpu::Buffer& views, uint32_t view_count, const CubeArray& store, uint32_t cubes);
+/// Between these two, passes are drawn into the first `cubes` cubes of the store; the second leaves it ready to be
+/// sampled.
+void begin_casters(gpu::Commands cmd, const CubeArray& store);
+void end_casters(gpu::Commands cmd, const CubeArray& store);
+/// Draws what `culled` has for this pass. The first pass clears the cubes.
+void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const GpuScene& scene, const CullState& culled,
+                    const gpu::Buffer& views, const CubeArray& store, uint32_t cubes, uint32_t pass);
 
 }  // namespace chandelier
