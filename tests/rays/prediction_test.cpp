@@ -403,7 +403,7 @@ TEST(Prediction, RefusesAnswersThatItDoesNotKnow) {
       EXPECT_EQ(error.what(), std::string(stage_choices()[stage].stage) + ": there is no answer of number 77");
     }
   }
-  EXPECT_THROW(count_casters(static_cast<Cull>(77), {}, world), std::invalid_argument);
+  EXPECT_THROW(count_casters(static_cast<Cull>(77), {}, {}, 1, world), std::invalid_argument);
 }
 
 TEST(Prediction, CountsLightsMapsAndViews) {
