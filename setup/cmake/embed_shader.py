@@ -16,6 +16,9 @@ NAME, ENTRY_POINT, EXECUTION_MODE, EXECUTION_MODE_ID = 5, 15, 16, 331
 TYPE_INT, TYPE_FLOAT, TYPE_VECTOR, TYPE_IMAGE, TYPE_SAMPLER, TYPE_SAMPLED_IMAGE = 21, 22, 23, 25, 26, 27
 TYPE_ARRAY, TYPE_STRUCT, TYPE_POINTER, CONSTANT, SPEC_CONSTANT, VARIABLE = 28, 30, 32, 43, 50, 59
 DECORATE, MEMBER_DECORATE = 71, 72
+# Instructions that read or write through a variable, and where their operands have it; of a call, each argument may be one.
+USES = {60: slice(2, 3), 61: slice(2, 3), 62: slice(0, 1), 65: slice(2, 3), 66: slice(2, 3), 68: slice(2, 3),
+        83: slice(2, 3), 57: slice(3, None)}
 ARRAY_STRIDE, BINDING, DESCRIPTOR_SET, OFFSET = 6, 33, 34, 35
 UNIFORM_CONSTANT, UNIFORM, PUSH_CONSTANT, STORAGE_BUFFER = 0, 2, 9, 12
 LOCAL_SIZE, LOCAL_SIZE_ID = 17, 38
@@ -35,7 +38,7 @@ class Module:
         if words[:1] != (0x07230203,):
             raise ShaderError("not SPIR-V")
         self.names, self.types, self.constants, self.variables = {}, {}, {}, []
-        self.decorations, self.offsets, self.local_size = {}, {}, (0, 0, 0)
+        self.decorations, self.offsets, self.local_size, self.used = {}, {}, (0, 0, 0), set()
         at = 5
         while at < len(words):
             count, op = words[at] >> 16, words[at] & 0xFFFF
@@ -56,6 +59,8 @@ class Module:
             self.decorations[args[0], args[1]] = args[2] if len(args) > 2 else 1
         elif op == MEMBER_DECORATE and args[2] == OFFSET:
             self.offsets[args[0], args[1]] = args[3]
+        elif op in USES:
+            self.used.update(args[USES[op]])
         elif op == EXECUTION_MODE and args[1] == LOCAL_SIZE:
             self.local_size = args[2:5]
         elif op == EXECUTION_MODE_ID and args[1] == LOCAL_SIZE_ID:
@@ -102,10 +107,10 @@ class Module:
         raise ShaderError(f"a binding has a type that is not known here (instruction {op})")
 
     def bindings(self):
-        """(set, binding, descriptor type, name), in order. A block without an instance has its own name."""
+        """(set, binding, descriptor type, name) of what the shader uses, in order. A block without an instance has its own name."""
         found = []
         for pointer, variable, storage in self.variables:
-            if storage in (UNIFORM_CONSTANT, UNIFORM, STORAGE_BUFFER):
+            if variable in self.used and storage in (UNIFORM_CONSTANT, UNIFORM, STORAGE_BUFFER):
                 kind = self.pointed_to(pointer)
                 found.append((self.decorations[variable, DESCRIPTOR_SET], self.decorations[variable, BINDING],
                               self.descriptor_type(kind, storage), self.names.get(variable) or self.names[kind]))

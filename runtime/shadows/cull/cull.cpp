@@ -149,8 +149,7 @@ void record_boxes(gpu::Commands cmd, const gpu::Device& device, const CullPipeli
             {{"BatchInstances", gpu::storage(scene.batch_instances)},
              {"Order", gpu::storage(state.order)},
              {"Blocks", gpu::storage(state.blocks)},
-             {"Boxes", gpu::storage(state.boxes)},
-             {"Totals", gpu::storage(state.totals)}});
+             {"Boxes", gpu::storage(state.boxes)}});
   push(cmd, pipelines.boxes, input, state, 0);
   gpu::dispatch(cmd, device, pipelines.boxes, state.block_count);
   wait_for_dispatch(cmd);
