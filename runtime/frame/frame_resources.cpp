@@ -46,8 +46,7 @@ void make_store(const gpu::Device& device, const Recipe& recipe, uint32_t cubes,
   if (store.face_size_px == recipe.face_size_px)
     cubes = std::clamp(store.cube_count + store.cube_count / 2, cubes,
                        std::max(cubes, cubes_within(device, recipe.face_size_px, recipe.shadow_budget_bytes)));
-  slot.retired.add(std::exchange(store, {}));
-  store = make_cube_array(device, recipe.face_size_px, cubes);
+  slot.retired.add(std::exchange(store, make_cube_array(device, recipe.face_size_px, cubes)));
   resources.store_is_new = true;
 }
 
@@ -85,10 +84,10 @@ void make_room(const gpu::Device& device, const RenderSettings& settings, const 
                FrameResources& resources) {
   Targets& targets = resources.targets;
   if (targets.width != settings.width || targets.height != settings.height) {
-    slot.retired.add(std::exchange(targets, {}));
-    slot.retired.add(std::exchange(resources.luminance_sums, {}));
-    targets = make_targets(device, settings.width, settings.height);
-    resources.luminance_sums = make_luminance_sums(device, settings.width, settings.height);
+    Targets made = make_targets(device, settings.width, settings.height);
+    gpu::Buffer sums = make_luminance_sums(device, settings.width, settings.height);
+    slot.retired.add(std::exchange(targets, std::move(made)));
+    slot.retired.add(std::exchange(resources.luminance_sums, std::move(sums)));
   }
   const Needs needs = needs_of(plan);
   if (plan.recipe.lookup == Lookup::tiles)

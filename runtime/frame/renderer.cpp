@@ -93,6 +93,7 @@ struct Renderer::Impl {
   FrameResources resources;
   std::vector<FrameSlot> slots;
   Planned planned;
+  bool is_drawn = false;
 
   Impl(gpu::Device& on, const World& of, const RendererOptions& options)
       : device(on),
@@ -117,6 +118,7 @@ struct Renderer::Impl {
   FrameStats draw(FrameSlot& slot, const RenderSettings& settings);
   void draw_by_rays(FrameSlot& slot, const RenderSettings& settings);
   const FrameStats& read_stats(FrameSlot& slot);
+  void check_drawn() const;
 
   void record_start(const Recording& frame);
   void record_uploads(const Recording& frame);
@@ -259,6 +261,7 @@ void Renderer::Impl::record_end(const Recording& frame) {
     const Timed timed(frame, "tone-map");
     record_tone_map(cmd, tone, settings.exposure_ev, resources.luminance_sums, resources.targets);
   }
+  is_drawn = true;
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
   const VkBufferCopy counts{.size = (plan.rounds.size() + 1) * sizeof(frame::CullCounters)};
@@ -271,12 +274,20 @@ void Renderer::Impl::record_end(const Recording& frame) {
 
 void Renderer::Impl::record(const Recording& frame) {
   const FramePlan& plan = frame.plan;
-  record_start(frame);
-  for (uint32_t round = 0; round < plan.rounds.size(); ++round) {
-    if (plan.rounds[round].map_count > 0) record_shadow_maps(frame, round);
-    record_light(frame, plan.rounds[round]);
+  const Version uploaded = scene.instances_version;
+  const bool store_is_new = resources.store_is_new;
+  try {
+    record_start(frame);
+    for (uint32_t round = 0; round < plan.rounds.size(); ++round) {
+      if (plan.rounds[round].map_count > 0) record_shadow_maps(frame, round);
+      record_light(frame, plan.rounds[round]);
+    }
+    record_end(frame);
+  } catch (...) {  // what was recorded is lost: the next frame does it again
+    scene.instances_version = uploaded;
+    resources.store_is_new = store_is_new;
+    throw;
   }
-  record_end(frame);
 }
 
 void Renderer::Impl::record_target(gpu::Commands cmd, const Target& target) {
@@ -328,11 +339,17 @@ void Renderer::Impl::draw_by_rays(FrameSlot& slot, const RenderSettings& setting
   gpu::run_once(device, [&](gpu::Commands cmd) { record_end({cmd, slot, settings, plan}); });
 }
 
+void Renderer::Impl::check_drawn() const {
+  if (!is_drawn) throw std::logic_error("no frame has been drawn yet");
+}
+
 const FrameStats& Renderer::Impl::read_stats(FrameSlot& slot) {
-  if (std::exchange(slot.is_read, true)) return slot.stats;
+  if (slot.is_read) return slot.stats;
   FrameStats& stats = slot.stats;
+  const auto stages = slot.timers.read();  // throws where the frame has not finished
+  slot.is_read = true;
   stats.frame_ms = slot.record_ms;
-  for (const auto& stage : slot.timers.read()) {
+  for (const auto& stage : stages) {
     stats.stages.push_back({stage.name, stage.gpu_ms, stage.cpu_ms});
     stats.frame_ms += stage.gpu_ms;
   }
@@ -374,6 +391,7 @@ const FrameStats& Renderer::record(VkCommandBuffer cmd, uint32_t slot, const Ren
 }
 
 void Renderer::record_again(VkCommandBuffer cmd, const Target& target) {
+  impl_->check_drawn();
   impl_->record_target({impl_->device, cmd}, target);
 }
 
@@ -405,6 +423,7 @@ bool Renderer::has_new_selection() const {
 }
 
 Picture Renderer::read_back() {
+  impl_->check_drawn();
   return read_picture(impl_->device, impl_->resources.targets);
 }
 

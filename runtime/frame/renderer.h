@@ -33,18 +33,19 @@ class Renderer {
   /// recorded. Throws gpu::Error.
   Renderer(gpu::Device& device, const World& world, const RendererOptions& options = {});
   Renderer(gpu::Device& device, World&& world, const RendererOptions& options = {}) = delete;
+  /// No recorded frame may be on its way.
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Records one frame into a command buffer that is being recorded, outside of a render pass, and submits nothing.
   /// Frames must be submitted in the order in which they were recorded, to the device's queue. `slot` is less than
-  /// frames_in_flight, and the commands that were recorded with it before have finished. Throws gpu::Error, and
-  /// std::invalid_argument where refusal() has a reason or the recipe needs rays, which only draw() casts. Returns what
-  /// is known already: all but times, exposure, draws and triangles.
+  /// frames_in_flight (else std::out_of_range), and the commands that were recorded with it before have finished.
+  /// Throws gpu::Error, and std::invalid_argument where refusal() has a reason or the recipe needs rays, which only
+  /// draw() casts. Returns what is known already: all but times, exposure, draws and triangles.
   const FrameStats& record(VkCommandBuffer cmd, uint32_t slot, const RenderSettings& settings,
                            const Target& target = {});
-  /// Records a copy of the last frame drawn or recorded.
+  /// Records a copy of the last frame drawn or recorded. Throws std::logic_error where there is none.
   void record_again(VkCommandBuffer cmd, const Target& target);
   /// Of the frame that was last recorded with this slot, whose commands have finished: does not wait. frame_ms is the
   /// time of record() and of the device together.
@@ -58,7 +59,7 @@ class Renderer {
   /// With RenderSettings::search_beside_frames: a search has ended since the last frame; the next one may look
   /// different.
   bool has_new_selection() const;
-  /// The last frame drawn.
+  /// The last frame drawn, which must have been submitted; waits for it. Throws std::logic_error where there is none.
   Picture read_back();
   /// The last frame as shown: VK_FORMAT_R8G8B8A8_UNORM holding sRGB values, in TRANSFER_SRC_OPTIMAL.
   VkImage shown_image() const;

@@ -13,6 +13,16 @@ void check(VkResult result, const char* what) {
   if (result < 0) throw Error(std::string(what) + " failed (VkResult " + std::to_string(result) + ")");
 }
 
+namespace {
+
+InstanceFunctions load_host_instance(const HostDevice& host) {
+  if (!host.get_instance_proc_addr || !host.instance || !host.physical || !host.device)
+    throw Error("the host's Vulkan device does not fit: a handle or get_instance_proc_addr is missing");
+  return load_instance(host.get_instance_proc_addr, host.instance);
+}
+
+}  // namespace
+
 Device::Device(const DeviceOptions& options) : owns_(true) {
   Instance made(options, validation_messages_.get());
   instance_functions_ = made.functions();
@@ -36,9 +46,14 @@ Device::Device(const HostDevice& host)
       queue_family(host.queue_family),
       samples_bc(host.texture_compression_bc),
       samples_anisotropic(host.sampler_anisotropy),
-      instance_functions_(load_instance(host.get_instance_proc_addr, host.instance)) {
+      instance_functions_(load_host_instance(host)) {
+  if (!instance_functions_.vkGetPhysicalDeviceFormatProperties2)
+    throw Error("the host's Vulkan instance does not fit: it was made for an older version than 1.3");
   if (const std::string lack = first_lack(instance_functions_, physical); !lack.empty())
     throw Error("the host's Vulkan device does not fit: " + lack);
+  if (!is_fitting_family(instance_functions_, physical, queue_family))
+    throw Error("the host's Vulkan queue does not fit: family " + std::to_string(queue_family) +
+                " does not draw, compute and time");
   try {
     start();
   } catch (...) {
@@ -97,6 +112,8 @@ void Device::read_properties() {
 // What an own device and a host's have in common.
 void Device::start() {
   functions_ = load_device(instance_functions_, handle);
+  if (!functions_->vkCmdPushDescriptorSetKHR || !functions_->vkCmdPipelineBarrier2)
+    throw Error("the Vulkan device was made without VK_KHR_push_descriptor, or for a version before 1.3");
   read_properties();
   if (!queue) functions_->vkGetDeviceQueue(handle, queue_family, 0, &queue);
   const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
@@ -108,9 +125,9 @@ void Device::start() {
 
 void Device::end() {
   if (functions_) {
-    functions_->vkDeviceWaitIdle(handle);
+    if (owns_) functions_->vkDeviceWaitIdle(handle);  // a host waits for its own queues
     allocator_.reset();
-    functions_->vkDestroyCommandPool(handle, command_pool, nullptr);
+    if (command_pool) functions_->vkDestroyCommandPool(handle, command_pool, nullptr);
     if (owns_) functions_->vkDestroyDevice(handle, nullptr);
   }
   if (!owns_) return;

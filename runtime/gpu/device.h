@@ -34,15 +34,15 @@ struct DeviceOptions {
   bool bounds = true;  // robustBufferAccess: reads and writes outside a buffer stay without effect
 };
 
-/// A host's own device, to be used by the runtime. All of it must outlive the Device made from it, and the device must
-/// have been made with what requirements.h asks for.
+/// A host's own device, to be used by the runtime. All of it must outlive the Device made from it, the device must have
+/// been made with what requirements.h asks for, and no frame may be on its way when the Device ends.
 struct HostDevice {
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
-  VkQueue queue = VK_NULL_HANDLE;  // of a family that draws, computes and times. Used by the calling thread only in
-  uint32_t queue_family = 0;       // constructors, Renderer::draw() and read_back(); never in Renderer::record()
+  VkQueue queue = VK_NULL_HANDLE;  // of a family that draws, computes and times. Used by the calling thread in
+  uint32_t queue_family = 0;       // Renderer's constructor, draw(), warm_up() and read_back(); never in record()
   // Optional features that the host has switched on.
   bool texture_compression_bc = false;
   bool sampler_anisotropy = false;

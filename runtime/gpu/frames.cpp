@@ -49,7 +49,7 @@ std::byte* Streamed::begin_write(const Device& device, Commands cmd, UploadArena
 
 FrameRing::FrameRing(const Device& device, uint32_t slots) : device_(device), slots_(slots) {
   for (Slot& slot : slots_) {
-    const VkFenceCreateInfo info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, .flags = VK_FENCE_CREATE_SIGNALED_BIT};
+    const VkFenceCreateInfo info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     VkFence fence = VK_NULL_HANDLE;
     check(device->vkCreateFence(device.handle, &info, nullptr, &fence), "vkCreateFence");
     slot.finished = {device.handle, fence, device->vkDestroyFence};
@@ -78,12 +78,14 @@ uint32_t FrameRing::next() {
 Commands FrameRing::begin(uint32_t slot) {
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+  // It may still be recording, where something threw after the last begin().
+  check(device_->vkResetCommandBuffer(slots_[slot].commands, 0), "vkResetCommandBuffer");
   check(device_->vkBeginCommandBuffer(slots_[slot].commands, &begin), "vkBeginCommandBuffer");
   return {device_, slots_[slot].commands};
 }
 
 void FrameRing::submit(uint32_t slot, VkSemaphore wait, VkSemaphore signal) {
-  const Slot& of = slots_[slot];
+  Slot& of = slots_[slot];
   check(device_->vkEndCommandBuffer(of.commands), "vkEndCommandBuffer");
   const VkSemaphoreSubmitInfo waited{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
                                      .semaphore = wait,
@@ -100,22 +102,25 @@ void FrameRing::submit(uint32_t slot, VkSemaphore wait, VkSemaphore signal) {
                            .pCommandBufferInfos = &commands,
                            .signalSemaphoreInfoCount = signal ? 1u : 0u,
                            .pSignalSemaphoreInfos = &signalled};
+  of.is_submitted = false;
   check(device_->vkResetFences(device_.handle, 1, of.finished.address()), "vkResetFences");
   check(device_->vkQueueSubmit2(device_.queue, 1, &info, of.finished), "vkQueueSubmit2");
+  of.is_submitted = true;
 }
 
 void FrameRing::wait(uint32_t slot) const {
+  if (!slots_[slot].is_submitted) return;
   check(device_->vkWaitForFences(device_.handle, 1, slots_[slot].finished.address(), VK_TRUE, UINT64_MAX),
         "vkWaitForFences");
 }
 
 bool FrameRing::is_finished(uint32_t slot) const {
-  return device_->vkGetFenceStatus(device_.handle, slots_[slot].finished) == VK_SUCCESS;
+  return !slots_[slot].is_submitted || device_->vkGetFenceStatus(device_.handle, slots_[slot].finished) == VK_SUCCESS;
 }
 
 void FrameRing::wait_for_all() const {
   for (const Slot& slot : slots_)
-    device_->vkWaitForFences(device_.handle, 1, slot.finished.address(), VK_TRUE, UINT64_MAX);
+    if (slot.is_submitted) device_->vkWaitForFences(device_.handle, 1, slot.finished.address(), VK_TRUE, UINT64_MAX);
 }
 
 }  // namespace chandelier::gpu

@@ -99,6 +99,7 @@ class FrameRing {
   struct Slot {
     VkCommandBuffer commands = VK_NULL_HANDLE;
     Owned<VkFence> finished;
+    bool is_submitted = false;  // else its fence is signalled by nothing
   };
   const Device& device_;
   std::vector<Slot> slots_;

@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/loader.h"
 
+#include <dlfcn.h>
 #include <volk.h>
 
 #include <mutex>
+#include <utility>
 
 #include "gpu/device.h"
 
 namespace chandelier::gpu {
 namespace {
 
-// volk finds the loader and a device's functions through two variables of the whole process: they are set and used
-// under this lock, and nothing else reads them.
+// volk fills a device's table through a variable of the whole process. It is lent for that under this lock, and has its
+// own value again afterwards: a host may use volk too.
 std::mutex volk_lock;
 
 }  // namespace
 
 PFN_vkGetInstanceProcAddr system_loader() {
-  const std::lock_guard lock(volk_lock);
-  if (volkInitialize() != VK_SUCCESS)
+  void* const library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);  // stays: the process counts it once
+  void* const function = library ? dlsym(library, "vkGetInstanceProcAddr") : nullptr;
+  if (!function)
     throw Error(
         "no Vulkan loader (libvulkan.so.1) on this machine; on Debian: apt install libvulkan1 mesa-vulkan-drivers");
-  return vkGetInstanceProcAddr;
+  return reinterpret_cast<PFN_vkGetInstanceProcAddr>(function);
 }
 
 InstanceFunctions load_instance(PFN_vkGetInstanceProcAddr loader, VkInstance instance) {
@@ -58,8 +61,9 @@ void DeleteDeviceFunctions::operator()(VolkDeviceTable* table) const {
 DeviceFunctions load_device(const InstanceFunctions& instance, VkDevice device) {
   DeviceFunctions table(new VolkDeviceTable{});
   const std::lock_guard lock(volk_lock);
-  vkGetDeviceProcAddr = instance.vkGetDeviceProcAddr;
+  const PFN_vkGetDeviceProcAddr lent = std::exchange(vkGetDeviceProcAddr, instance.vkGetDeviceProcAddr);
   volkLoadDeviceTable(table.get(), device);
+  vkGetDeviceProcAddr = lent;
   return table;
 }
 

@@ -79,7 +79,7 @@ std::vector<NeededLimit> needed_limits(const VkPhysicalDeviceLimits& limits) {
   return {{"maxComputeWorkGroupInvocations", 256, limits.maxComputeWorkGroupInvocations},
           {"maxComputeWorkGroupSize[0]", 256, limits.maxComputeWorkGroupSize[0]},
           {"maxComputeWorkGroupSize[1]", 16, limits.maxComputeWorkGroupSize[1]},
-          {"maxDrawIndirectCount", 65536, limits.maxDrawIndirectCount},
+          {"maxDrawIndirectCount", 65535, limits.maxDrawIndirectCount},
           {"maxBoundDescriptorSets", 2, limits.maxBoundDescriptorSets},
           {"maxPerStageDescriptorStorageBuffers", 14, limits.maxPerStageDescriptorStorageBuffers},
           {"maxPushConstantsSize", 128, limits.maxPushConstantsSize},
@@ -87,14 +87,20 @@ std::vector<NeededLimit> needed_limits(const VkPhysicalDeviceLimits& limits) {
           {"maxImageArrayLayers", 6, limits.maxImageArrayLayers}};
 }
 
-uint32_t find_queue_family(const InstanceFunctions& instance, VkPhysicalDevice device) {
+bool is_fitting_family(const InstanceFunctions& instance, VkPhysicalDevice device, uint32_t family) {
   uint32_t count = 0;
   instance.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   instance.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
   constexpr VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  return family < count && (families[family].queueFlags & needed) == needed && families[family].timestampValidBits;
+}
+
+uint32_t find_queue_family(const InstanceFunctions& instance, VkPhysicalDevice device) {
+  uint32_t count = 0;
+  instance.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   for (uint32_t i = 0; i < count; ++i)
-    if ((families[i].queueFlags & needed) == needed && families[i].timestampValidBits) return i;
+    if (is_fitting_family(instance, device, i)) return i;
   return UINT32_MAX;
 }
 

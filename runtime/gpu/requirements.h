@@ -44,6 +44,8 @@ std::vector<NeededLimit> needed_limits(const VkPhysicalDeviceLimits& limits);
 
 /// A family whose queue draws, computes and times; UINT32_MAX where there is none.
 uint32_t find_queue_family(const InstanceFunctions& instance, VkPhysicalDevice device);
+/// Is this such a family?
+bool is_fitting_family(const InstanceFunctions& instance, VkPhysicalDevice device, uint32_t family);
 
 /// The first thing that a device lacks, "no multiDrawIndirect"; empty where it has everything.
 std::string first_lack(const InstanceFunctions& instance, VkPhysicalDevice device);

@@ -55,12 +55,13 @@ void Timers::add_cpu(const char* stage, double cpu_ms) {
 }
 
 std::span<const Timers::Stage> Timers::read() {
-  if (std::exchange(is_read_, true) || used_ == 0) return stages_;
+  if (is_read_ || used_ == 0) return stages_;
   ticks_.resize(used_);
   const VkResult result = (*device_)->vkGetQueryPoolResults(device_->handle, pool_, 0, used_, ticks_.size() * 8,
                                                             ticks_.data(), 8, VK_QUERY_RESULT_64_BIT);
   if (result == VK_NOT_READY) throw Error("a frame's times were asked for before the device had finished it");
   check(result, "vkGetQueryPoolResults");
+  is_read_ = true;
   // A timestamp has so many valid bits and wraps around: so does the difference.
   for (const Span& span : spans_)
     stages_[span.stage].gpu_ms +=

@@ -78,11 +78,12 @@ void Uploader::flush() {
   handle_ = VK_NULL_HANDLE;
   staging_.clear();
   done_bytes_ += std::exchange(staged_bytes_, 0);
-  if (progress_) progress_(done_bytes_, all_bytes_);
+  if (progress_) progress_(std::min(done_bytes_, all_bytes_), all_bytes_);
 }
 
 void Uploader::finish() {
   flush();
+  if (progress_ && done_bytes_ < all_bytes_) progress_(all_bytes_, all_bytes_);
 }
 
 }  // namespace chandelier::gpu

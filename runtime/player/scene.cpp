@@ -43,7 +43,7 @@ FileStamp stamp_of(const std::filesystem::path& path) {
 
 Scene::Scene(const Options& asked)
     : stamp(stamp_of(asked.pack)),
-      pack(asked.pack, 0, asked.mode == Mode::predict ? pack::Hold::mapped : pack::Hold::copied),
+      pack(asked.pack, 0, pack::Hold::copied),
       world(pack),
       options(with_headlight(asked, pack.view())),
       camera(camera_of(asked, pack)) {

@@ -91,9 +91,9 @@ bool Swapchain::make(VkExtent2D window) {
   info.presentMode = VK_PRESENT_MODE_FIFO_KHR;  // the one mode that every device has
   info.clipped = VK_TRUE;
   info.oldSwapchain = swapchain_;
+  gpu::check(device_->vkDeviceWaitIdle(device_.handle), "vkDeviceWaitIdle");
   VkSwapchainKHR fresh = VK_NULL_HANDLE;
   gpu::check(device_->vkCreateSwapchainKHR(device_.handle, &info, nullptr, &fresh), "vkCreateSwapchainKHR");
-  gpu::check(device_->vkDeviceWaitIdle(device_.handle), "vkDeviceWaitIdle");
   device_->vkDestroySwapchainKHR(device_.handle, swapchain_, nullptr);
   swapchain_ = fresh;
 

@@ -143,7 +143,10 @@ class Window::Screen {
   /// Returns true if it showed a picture. `draws_anyway`: draw even if nothing changed.
   bool update(bool draws_anyway) {
     const bool is_replaced = live_.follow();
-    if (is_replaced) last_slot_.reset();
+    if (is_replaced) {
+      last_slot_.reset();
+      drawn_ = {};
+    }
     if (is_replaced || draws_anyway || live_.renderer().has_new_selection() || !(of(live_.settings) == drawn_))
       show(true);
     else if (impl_.is_covered)

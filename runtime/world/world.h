@@ -40,6 +40,11 @@ class World {
   explicit World(const pack::View& pack, const WorldRoom& room = {});
   explicit World(const pack::File& pack, const WorldRoom& room = {}) : World(pack.view(), room) {}
   World(pack::File&& pack, const WorldRoom& room = {}) = delete;
+  World(const World&) = default;
+  World(World&&) = default;
+  // Who reads it remembers versions, which another world's are not.
+  World& operator=(const World&) = delete;
+  World& operator=(World&&) = delete;
 
   /// What does not change. Its lights, instances and batch instances are those of the bake: ask this world instead.
   const pack::View& pack() const { return pack_; }
