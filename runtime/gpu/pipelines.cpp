@@ -34,6 +34,8 @@ void add_shader(const Shader& shader, size_t sets, Pipeline& pipeline) {
       pipeline.bindings.push_back(binding);
     else if (same->type != binding.type || same->name != binding.name)
       fail(binding, "has the number of " + std::string(same->name) + " in " + std::string(pipeline.name));
+    else
+      same->is_used = same->is_used || binding.is_used;
   }
   pipeline.push_bytes = std::max(pipeline.push_bytes, shader.push_bytes);
 }
@@ -227,7 +229,7 @@ void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Resource
     ++count;
   }
   for (const Binding& binding : pipeline.bindings)
-    if ((bound >> binding.number & 1u) == 0)
+    if (binding.is_used && (bound >> binding.number & 1u) == 0)
       throw Error(std::string(pipeline.name) + ": " + std::string(binding.name) + ": nothing is bound");
   cmd->vkCmdBindPipeline(cmd, pipeline.bind_point, pipeline.handle);
   cmd->vkCmdPushDescriptorSetKHR(cmd, pipeline.bind_point, pipeline.layout, 0, count, writes.data());

@@ -16,6 +16,7 @@ struct Binding {
   uint32_t number;
   VkDescriptorType type;
   std::string_view name;  // in GLSL: of the block where it has no instance, else of the variable
+  bool is_used = true;    // by the shader's code; else it is only declared, and need not be bound
 };
 
 struct Shader {

@@ -13,6 +13,7 @@ layout(binding = 5) uniform sampler2D picture;
 layout(binding = 2, rgba8) uniform writeonly image2D target;
 layout(binding = 3) uniform Block { vec4 scale; };
 layout(binding = 0, scalar) buffer Sums { uint sums[]; } named;
+layout(binding = 9, scalar) buffer Idle { uint idle[]; };  // declared alone
 layout(push_constant, scalar) uniform Push {
   vec3 a;
   uint b[3];

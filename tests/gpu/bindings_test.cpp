@@ -32,12 +32,14 @@ TEST_F(BindingsTest, AreReadFromSpirv) {
       {2, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, "target"},
       {3, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, "Block"},
       {5, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, "picture"},
-      {7, buffer, "Words"}};
+      {7, buffer, "Words"},
+      {9, buffer, "Idle"}};
   ASSERT_EQ(shader.bindings.size(), expected.size());
   for (size_t i = 0; i < expected.size(); ++i) {
     const gpu::Binding& binding = shader.bindings[i];
     EXPECT_EQ(std::tuple(binding.number, binding.type, binding.name), expected[i]);
     EXPECT_EQ(binding.set, 0u);
+    EXPECT_EQ(binding.is_used, binding.name != "Idle");
   }
   EXPECT_EQ(shader.name, "bindings_comp");
   EXPECT_EQ(shader.push_bytes, 12u + 3 * 4 + 2 * 12);
@@ -47,7 +49,7 @@ TEST_F(BindingsTest, AreReadFromSpirv) {
 
 // A pipeline of two buffers, made from the shader above by leaving out what is of another kind.
 TEST_F(BindingsTest, WhatIsBoundHasToBeWhatTheShaderTakes) {
-  const gpu::Binding two[]{{0, 0, buffer, "named"}, {0, 7, buffer, "Words"}};
+  const gpu::Binding two[]{{0, 0, buffer, "named"}, {0, 7, buffer, "Words"}, {0, 9, buffer, "Idle", false}};
   gpu::Pipeline pipeline;
   pipeline.name = "two";
   pipeline.bindings.assign(std::begin(two), std::end(two));
