@@ -23,7 +23,7 @@ struct RenderSettings {
   float headlight = 0.0f;                  // of a white surface that faces the camera, by a light in the camera
   std::optional<float> exposure_ev;        // stops; absent: from the picture's own brightness
   std::vector<uint32_t> previous_centers;  // FrameStats::centers of the frame before, where the recipe has stability
-  std::vector<uint32_t> centers;           // whose map each light of the world takes; pack::none, or empty: as selected
+  std::vector<uint32_t> centers;           // whose map each light of the world takes; pack::none, or none: as selected
   uint64_t most_caster_draws = chandelier::most_caster_draws;  // kept at a time; what exceeds them takes more passes
   bool lights_out_of_view = false;  // are selected too, as for a camera that looks everywhere
   /// Select error-driven: a new view's search runs in a thread, and frames go on with the last answer until it ends

@@ -129,8 +129,8 @@ struct Renderer::Impl {
 };
 
 bool Renderer::Impl::has_planned(const RenderSettings& settings) const {
-  return planned.is_there && planned.world_version == world.version() && !surroundings.has_news() &&
-         planned.settings == settings;
+  return planned.is_there && planned.world_version == world.version() && planned.settings == settings &&
+         !(planned.stats.selection_is_provisional && surroundings.has_news());
 }
 
 void Renderer::Impl::plan(const RenderSettings& settings) {
@@ -419,7 +419,8 @@ void Renderer::warm_up(const RenderSettings& settings) {
 }
 
 bool Renderer::has_new_selection() const {
-  return impl_->surroundings.has_news();
+  const Planned& planned = impl_->planned;
+  return planned.is_there && planned.stats.selection_is_provisional && impl_->surroundings.has_news();
 }
 
 Picture Renderer::read_back() {

@@ -56,8 +56,8 @@ class Renderer {
   /// Draws one frame with slot 0 and waits for it. No recorded frame may be on its way. Throws as record() does, and
   /// std::invalid_argument where what the recipe needs is missing in the settings.
   FrameStats draw(const RenderSettings& settings);
-  /// With RenderSettings::search_beside_frames: a search has ended since the last frame; the next one may look
-  /// different.
+  /// With RenderSettings::search_beside_frames: a search has ended since the last frame, whose selection was
+  /// provisional; the next one may look different.
   bool has_new_selection() const;
   /// The last frame drawn, which must have been submitted; waits for it. Throws std::logic_error where there is none.
   Picture read_back();

@@ -18,7 +18,8 @@ class Surroundings {
 
   lights::Walls& walls();
   ErrorDriven& by_error();
-  /// An error search that ran beside the frames has ended: selecting again may select otherwise.
+  /// An error search that ran beside the frames has ended, and nothing was selected by error since: a selection that
+  /// was provisional may now be otherwise.
   bool has_news() const { return by_error_ && by_error_->has_news(); }
 
  private:

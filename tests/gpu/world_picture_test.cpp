@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A world that changes between frames is drawn as if it had been baked so.
+#include <chrono>
+#include <thread>
+
 #include "recipes_test.h"
 #include "truth/ray_traced.h"
 
@@ -111,6 +114,22 @@ TEST_F(WorldPictureTest, LightsComeAndGo) {
     EXPECT_NE(more.stats.centers[added], pack::none);
     EXPECT_GT(brightness(more.picture), brightness(before.picture));
   }
+}
+
+// A host draws again as long as there is one: it must come to rest when nobody asks for a selection by error any more.
+TEST_F(WorldPictureTest, ANewSelectionIsNewsOnlyWhereTheLastWasProvisional) {
+  const pack::File pack = scene_with(box_at, lamp_at).open();
+  const World world(pack);
+  Renderer renderer(device(), world);
+  RenderSettings by_error = all_settings().back();
+  by_error.search_beside_frames = true;
+  EXPECT_FALSE(renderer.has_new_selection());
+  EXPECT_TRUE(renderer.draw(by_error).selection_is_provisional);
+  while (!renderer.has_new_selection()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_FALSE(renderer.draw(all_settings().front()).selection_is_provisional);  // with a map for each light
+  EXPECT_FALSE(renderer.has_new_selection());
+  EXPECT_FALSE(renderer.draw(by_error).selection_is_provisional);
+  EXPECT_FALSE(renderer.has_new_selection());
 }
 
 // Rays on the CPU stand where the world does.
