@@ -164,8 +164,12 @@ std::vector<Member> select_members(const World& world, std::span<const LightId> 
   if (recipe.select == Select::per_light) return one_map_each(lights, in_view);
   const bool by_error = recipe.select == Select::error_driven;
   const bool has_limits = by_error && (recipe.max_maps || recipe.max_rmse);
+  // A selection by error depends on no frame before: else each answer would change what the next is asked, and a still
+  // picture might never rest.
+  SelectionInputs for_clusters = inputs;
+  if (by_error) for_clusters.previous_centers = {};
   std::vector<Member> clusters;
-  if (!has_limits || inputs.search_beside_frames) clusters = clustered(lights, in_view, recipe, camera, inputs);
+  if (!has_limits || inputs.search_beside_frames) clusters = clustered(lights, in_view, recipe, camera, for_clusters);
   if (!by_error) return clusters;
   ErrorDriven& errors = inputs.surroundings->by_error();
   const ErrorTask task = error_task(world, in_view, clusters, recipe, camera, aspect, inputs);
@@ -259,6 +263,16 @@ float added_radius_m(const LightList& list, uint32_t map) {
   return std::sqrt(std::max(0.0f, disc_m * disc_m - authored_m * authored_m));
 }
 
+// Lights that came later have none.
+std::vector<LightId> one_each(std::span<const LightId> centers, size_t lights, const char* what) {
+  if (centers.size() > lights)
+    throw std::invalid_argument(std::string(what) + ": more than one per light of the world (" +
+                                std::to_string(centers.size()) + " for " + std::to_string(lights) + ")");
+  std::vector<LightId> of_all(centers.begin(), centers.end());
+  if (!centers.empty()) of_all.resize(lights, pack::none);
+  return of_all;
+}
+
 }  // namespace
 
 LightList select_lights(const World& world, const Recipe& recipe, const Camera& camera, float aspect,
@@ -268,18 +282,15 @@ LightList select_lights(const World& world, const Recipe& recipe, const Camera& 
       recipe.select == Select::error_driven || (recipe.select != Select::per_light && recipe.walls != WallTest::none);
   if (looks_around && !inputs.surroundings)
     throw std::invalid_argument("select_lights: the recipe needs to know the lights' surroundings");
-  const auto one_each = [&](std::span<const LightId> centers, const char* what) {
-    if (!centers.empty() && centers.size() != lights.size())
-      throw std::invalid_argument(std::string(what) + ": must be one per light of the world (" +
-                                  std::to_string(centers.size()) + " for " + std::to_string(lights.size()) + ")");
-  };
-  one_each(inputs.previous_centers, "previous centres");
-  one_each(inputs.centers, "centres");
+  const auto previous_centers = one_each(inputs.previous_centers, lights.size(), "previous centres");
+  const auto centers = one_each(inputs.centers, lights.size(), "centres");
+  SelectionInputs inputs_of_all = inputs;
+  inputs_of_all.previous_centers = previous_centers;
   auto in_view = lights_in_view(world, camera, aspect, inputs.out_of_view);
   const auto shadowless = take_shadowless(world, in_view);
   bool is_provisional = false;
-  auto members = select_members(world, in_view, recipe, camera, aspect, inputs, is_provisional);
-  if (!inputs.centers.empty()) hold_centers(lights, inputs.centers, members);
+  auto members = select_members(world, in_view, recipe, camera, aspect, inputs_of_all, is_provisional);
+  if (!centers.empty()) hold_centers(lights, centers, members);
   LightList list = make_list(lights, std::move(members), recipe.z_far_m);
   for (const LightId id : shadowless) list.shadowless.push_back(frame_light(lights[id]));
   list.lights_in_view = static_cast<uint32_t>(in_view.size() + shadowless.size());

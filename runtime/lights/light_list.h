@@ -39,18 +39,18 @@ struct SelectionInputs {
   float ambient = 0.0f;                  // how bright the picture will be, to select by error
   float headlight = 0.0f;
   std::optional<float> exposure_ev;
-  /// Each light's centre a frame ago, pack::none where it was not in view, which the recipe's stability favours; or
-  /// empty.
+  /// Each light's centre a frame ago, pack::none where it was not in view, which the recipe's stability favours (not
+  /// where it selects by error). Of lights beyond its end none; may be empty.
   std::span<const LightId> previous_centers;
   /// For each light the one whose map it shall take; pack::none, or a directional light for another or the other way
-  /// round, or the map that most of the light takes anyway: as selected. May be empty.
+  /// round, or the map that most of the light takes anyway, or beyond the end: as selected. May be empty.
   std::span<const LightId> centers;
   bool out_of_view = false;           // lights that the camera does not see are selected too
   bool search_beside_frames = false;  // an error search runs in a thread, and its last answer is taken until it ends
 };
 
 /// Point and spot lights may share a map, and directional lights among themselves. Throws std::invalid_argument where
-/// the recipe needs surroundings and there are none, or centres are not one for each of world.lights().
+/// the recipe needs surroundings and there are none, or centres are more than world.lights().
 LightList select_lights(const World& world, const Recipe& recipe, const Camera& camera, float aspect,
                         const SelectionInputs& inputs = {});
 

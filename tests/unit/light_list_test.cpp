@@ -170,7 +170,7 @@ TEST(LightListTest, StabilityClingsToThePreviousFramesCenters) {
   recipe.stability = 0.3f;
   LightList list = select_lights(world_of(lights), recipe, {}, 1.0f);
   EXPECT_EQ(centers_by_light(world_of(lights), list), (std::vector<uint32_t>{pack::none, 1, 1}));
-  const std::vector<uint32_t> previous{pack::none, 2, 2}, wrong(2);
+  const std::vector<uint32_t> previous{pack::none, 2, 2}, wrong(4);
   EXPECT_EQ(select_lights(world_of(lights), recipe, {}, 1.0f, {.previous_centers = previous}).center,
             (std::vector<uint32_t>{2, 2}));
   const std::vector<uint32_t> of_one_out_of_view{0, 0, 0};
@@ -180,6 +180,21 @@ TEST(LightListTest, StabilityClingsToThePreviousFramesCenters) {
   EXPECT_EQ(select_lights(world_of(lights), recipe, {}, 1.0f, {.previous_centers = previous}).center,
             (std::vector<uint32_t>{1, 1}));
   EXPECT_THROW(select_lights(world_of(lights), recipe, {}, 1.0f, {.previous_centers = wrong}), std::invalid_argument);
+}
+
+// As after World::add_light(): of the lights beyond the end nothing is known, and nothing is told.
+TEST(LightListTest, CentersOfAFrameBeforeALightCameAreEnough) {
+  const pack::Light lights[]{light_at({0, 0, -4}, 2), light_at({0, 0, -4.2f}, 2), light_at({9, 0, -4}, 1),
+                             light_at({9, 0, -4.2f}, 1)};
+  Recipe recipe = clustering(0.5f);
+  recipe.stability = 0.3f;
+  const auto centers = [&](const SelectionInputs& inputs) {
+    return centers_by_light(world_of(lights), select_lights(world_of(lights), recipe, {}, 1.0f, inputs));
+  };
+  const std::vector<uint32_t> before{1, 1};
+  EXPECT_EQ(centers({.out_of_view = true}), (std::vector<uint32_t>{0, 0, 2, 2}));
+  EXPECT_EQ(centers({.previous_centers = before, .out_of_view = true}), (std::vector<uint32_t>{1, 1, 2, 2}));
+  EXPECT_EQ(centers({.centers = before, .out_of_view = true}), (std::vector<uint32_t>{1, 1, 2, 2}));
 }
 
 // Centres that are given hold whatever would be selected; C_att follows.
@@ -193,8 +208,8 @@ TEST(LightListTest, LightsTakeTheMapsTheyAreTold) {
   EXPECT_EQ(centers_by_light(world_of(lights), list), (std::vector<uint32_t>{2, 1, 2, 3}));
   ASSERT_EQ(list.maps.size(), 3u);
   EXPECT_FLOAT_EQ(list.maps[1].range_m, 7.0f);
-  const std::vector<uint32_t> too_few{0};
-  EXPECT_THROW(select_lights(world_of(lights), clustering(0.1f), {}, 1.0f, {.centers = too_few}),
+  const std::vector<uint32_t> too_many(5, pack::none);
+  EXPECT_THROW(select_lights(world_of(lights), clustering(0.1f), {}, 1.0f, {.centers = too_many}),
                std::invalid_argument);
 }
 
