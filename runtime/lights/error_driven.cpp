@@ -12,7 +12,8 @@
 namespace chandelier {
 namespace {
 
-// Of two recipes that select by error. Light clusters and groups follow from recipe, view and world.
+// Of two recipes that select by error. Light clusters and groups follow from recipe, view and world (stability has no
+// say: select_members() gives them no previous centres).
 bool ask_the_same(const ErrorTask& a, const ErrorTask& b) {
   const auto asked = [](const Recipe& r) {
     return std::tie(r.max_maps, r.max_rmse, r.filter, r.face_size_px, r.d_init_m, r.z_far_m, r.distance_scaling,
@@ -76,10 +77,16 @@ class Adapted {
 }  // namespace
 
 ErrorDriven::ErrorDriven(const World& world, const rays::PackRays& rays)
-    : world_(world), scene_(world.pack(), rays), search_(scene_) {}
+    : world_(world),
+      rays_(rays),
+      searched_(rays),
+      instances_(world.instances_version()),
+      scene_(world.pack(), searched_),
+      search_(scene_) {}
 
 std::vector<MapMember> ErrorDriven::select(const ErrorTask& task) {
   stop();
+  follow_instances();
   return search_.select(task, sampled_lights(world_, task.key.in_view), {});
 }
 
@@ -87,45 +94,58 @@ bool ErrorDriven::has_news() const {
   return running_.valid() && running_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-// Throws what the search threw.
-void ErrorDriven::take_news() {
-  if (!has_news()) return;
-  if (auto found = running_.get()) last_ = std::move(found);
+bool ErrorDriven::knows(const ErrorTask& task) const {
+  return last_ && ask_the_same(task, *last_->task);
 }
 
+// Only while no search runs. What search_ has kept of other instances it makes anew: its key tells.
+void ErrorDriven::follow_instances() {
+  if (instances_ == world_.instances_version()) return;
+  searched_ = rays_;
+  instances_ = world_.instances_version();
+}
+
+void ErrorDriven::begin(const ErrorTask& task) {
+  follow_instances();
+  stop_ = std::stop_source();
+  // Copies: the world may change while the search goes on.
+  running_ = std::async(
+      std::launch::async,
+      [this, asked = std::make_shared<const ErrorTask>(task), lights = sampled_lights(world_, task.key.in_view),
+       stop = stop_.get_token()]() -> std::optional<Found> {
+        try {
+          return Found{asked, search_.select(*asked, lights, stop)};
+        } catch (const SearchStopped&) {
+          return std::nullopt;
+        }
+      });
+}
+
+// Throws what the search threw.
 std::optional<ErrorAnswer> ErrorDriven::select_beside(const ErrorTask& task) {
-  take_news();
-  if (last_ && ask_the_same(task, *last_->task)) return ErrorAnswer{last_->members, true};
-  if (!running_.valid()) {
-    stop_ = std::stop_source();
-    // Copies: the world may change while the search goes on.
-    running_ = std::async(
-        std::launch::async,
-        [this, asked = std::make_shared<const ErrorTask>(task), lights = sampled_lights(world_, task.key.in_view),
-         stop = stop_.get_token()]() -> std::optional<Found> {
-          try {
-            return Found{asked, search_.select(*asked, lights, stop)};
-          } catch (const SearchStopped&) {
-            return std::nullopt;
-          }
-        });
+  if (knows(task)) stop_.request_stop();
+  if (has_news()) {
+    auto found = running_.get();
+    if (found && !knows(task)) last_ = std::move(found);
   }
+  if (knows(task)) return ErrorAnswer{last_->members, true};
+  if (!running_.valid()) begin(task);
   if (!last_) return std::nullopt;
   Adapted adapted(world_, task);
   for (const MapMember& member : last_->members) adapted.add(*last_->task, member);
   return ErrorAnswer{adapted.take(), false};
 }
 
+// What the search found is left for select_beside() to judge.
 void ErrorDriven::stop() {
-  if (!running_.valid()) return;
   stop_.request_stop();
-  running_.wait();
-  if (auto found = std::exchange(running_, {}).get()) last_ = std::move(found);
+  if (running_.valid()) running_.wait();
 }
 
 double ErrorDriven::expected_rmse(std::span<const LightId> in_view, std::span<const MapMember> members,
                                   const SampledView& view, const Recipe& recipe) {
   stop();
+  follow_instances();
   return search_.expected_rmse(world_key(world_, in_view), sampled_lights(world_, in_view), view, members, recipe);
 }
 

@@ -22,7 +22,8 @@ struct ErrorAnswer {
 
 class ErrorDriven {
  public:
-  /// `world` and `rays` must outlive this. Rays may only change after stop().
+  /// `world` and `rays` must outlive this. `rays` must stand as the world does whenever something is asked; searches
+  /// read a copy.
   ErrorDriven(const World& world, const rays::PackRays& rays);
   ErrorDriven(const ErrorDriven&) = delete;
   ~ErrorDriven() { stop_.request_stop(); }  // and waits: running_ is the first to go
@@ -30,13 +31,12 @@ class ErrorDriven {
   /// The exact answer.
   std::vector<MapMember> select(const ErrorTask& task);
   /// Never waits: the exact answer where it is known, else the last one, and a search for this task begins as soon as
-  /// no other runs. A light that the last answer does not know has a map of its own until then. Nothing where there is
-  /// no answer yet.
+  /// no other runs. One for another task runs to its end, so that there are new answers while every frame asks for
+  /// something else; where the exact answer is known it is stopped and its answer dropped. A light that the last answer
+  /// does not know has a map of its own until then. Nothing where there is no answer yet.
   std::optional<ErrorAnswer> select_beside(const ErrorTask& task);
   /// A search that select_beside() began has ended, and nobody has taken its answer yet.
   bool has_news() const;
-  /// Ends a running search without an answer.
-  void stop();
 
   /// estimated_rmse() of `members`, whose numbers are indices into `in_view`, read by `recipe.filter`.
   double expected_rmse(std::span<const LightId> in_view, std::span<const MapMember> members, const SampledView& view,
@@ -47,11 +47,17 @@ class ErrorDriven {
     std::shared_ptr<const ErrorTask> task;
     std::vector<MapMember> members;
   };
-  void take_news();
+  bool knows(const ErrorTask& task) const;
+  void stop();
+  void follow_instances();
+  void begin(const ErrorTask& task);
 
   const World& world_;
+  const rays::PackRays& rays_;
+  rays::PackRays searched_;  // as instances stood when the last search began. The thread's as search_ is
+  Version instances_;        // that searched_ stand as
   SampledScene scene_;
-  ErrorSearch search_;  // the thread's while running_ is valid
+  ErrorSearch search_;  // the thread's until running_ is ready
   std::optional<Found> last_;
   std::stop_source stop_;
   std::future<std::optional<Found>> running_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frame_schema.h"
+#include "lights/search_stopped.h"
 #include "lights/shown_curve.h"
 
 namespace chandelier {
@@ -103,7 +104,8 @@ float visibility(const LightSamples& samples, const MapMember& map, uint32_t poi
 
 }  // namespace
 
-double estimated_rmse(const LightSamples& samples, std::span<const MapMember> members, const ShadowReading& reading) {
+double estimated_rmse(const LightSamples& samples, std::span<const MapMember> members, const ShadowReading& reading,
+                      const std::stop_token& stop) {
   const auto points = samples.points();
   std::vector<glm::vec3> estimate;
   for (const auto& point : points) estimate.push_back(point.unshadowable);
@@ -113,6 +115,7 @@ double estimated_rmse(const LightSamples& samples, std::span<const MapMember> me
     const MapMember& member = members[i];
     if (i == 0 || members[i - 1].center != member.center) std::fill(of_map.begin(), of_map.end(), not_asked);
     for (const LightSamples::Contribution& contribution : samples.contributions(member.light)) {
+      stop_if_asked(stop);
       float& lit = of_map[contribution.point];
       if (lit == not_asked) lit = visibility(samples, member, contribution.point, reading);
       estimate[contribution.point] += member.share * lit * contribution.radiance;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 
 #include "lights/light_samples.h"
 #include "recipe_schema.h"
@@ -25,7 +26,9 @@ struct ShadowReading {
 };
 
 /// Expected root mean square error of the shown picture (0 to 1, over R, G and B) against one hard shadow map for each
-/// light. `members`: every light that `samples` was made for, those of one map after each other.
-double estimated_rmse(const LightSamples& samples, std::span<const MapMember> members, const ShadowReading& reading);
+/// light. `members`: every light that `samples` was made for, those of one map after each other. Throws
+/// SearchStopped.
+double estimated_rmse(const LightSamples& samples, std::span<const MapMember> members, const ShadowReading& reading,
+                      const std::stop_token& stop = {});
 
 }  // namespace chandelier

@@ -8,7 +8,11 @@ namespace chandelier {
 namespace {
 
 constexpr float lights_times_points = 3e5f;
-constexpr float fewest_rows = 36.0f, most_rows = 108.0f;
+constexpr float usual_rows = 36.0f, most_rows = 108.0f;
+// Lights that reach everything add something to every point: 16 bytes each in the samples of judge and search. Above
+// 1,302 lights the usual rows would be more than this.
+constexpr float most_lights_times_points = 3e6f;
+constexpr float fewest_rows = 9.0f;  // 144 points; from 20,834 lights on
 constexpr uint32_t scatter_of_search = 1;
 // Of the error that light clusters are expected to make. What is expected of a selection may be too low by a third, so
 // it aims below theirs; further below where that takes few maps (ERROR_SELECTION.md).
@@ -34,8 +38,12 @@ WorldKey world_key(const World& world, std::span<const LightId> in_view) {
 }
 
 SampleSettings sample_grid(size_t lights, const SampledView& view) {
-  const float points = lights_times_points / static_cast<float>(std::max<size_t>(1, lights));
-  const float rows = std::clamp(std::sqrt(points * 9.0f / 16.0f), fewest_rows, most_rows);
+  const auto rows_for = [&](float entries) {
+    const float points = entries / static_cast<float>(std::max<size_t>(1, lights));
+    return std::sqrt(points * 9.0f / 16.0f);
+  };
+  const float fewest = std::clamp(rows_for(most_lights_times_points), fewest_rows, usual_rows);
+  const float rows = std::clamp(rows_for(lights_times_points), fewest, most_rows);
   return {.columns = static_cast<uint32_t>(rows * 16.0f / 9.0f),
           .rows = static_cast<uint32_t>(rows),
           .ambient = view.ambient,
@@ -69,7 +77,7 @@ void ErrorSearch::build_ladder(const ErrorTask& task, const std::stop_token& sto
 std::vector<MapMember> ErrorSearch::within(double most_rmse, uint32_t most_maps, const Recipe& recipe,
                                            const std::stop_token& stop) const {
   auto chosen = ladder_->within(most_rmse, *judge_, {recipe.filter, recipe.face_size_px}, stop);
-  return map_count(chosen) <= most_maps ? chosen : ladder_->with_at_most(most_maps);
+  return map_count(chosen) <= most_maps ? chosen : ladder_->with_at_most(most_maps, stop);
 }
 
 std::vector<MapMember> ErrorSearch::select(const ErrorTask& task, const SampledLights& lights,
@@ -79,15 +87,15 @@ std::vector<MapMember> ErrorSearch::select(const ErrorTask& task, const SampledL
   const Recipe& recipe = task.recipe;
   const uint32_t most_maps = recipe.max_maps.value_or(UINT32_MAX);
   if (recipe.max_rmse) return within(*recipe.max_rmse, most_maps, recipe, stop);
-  if (recipe.max_maps) return ladder_->with_at_most(most_maps);
+  if (recipe.max_maps) return ladder_->with_at_most(most_maps, stop);
   const Filter soft = recipe.filter == Filter::hard ? Filter::pcss : recipe.filter;
-  const double target = estimated_rmse(*judge_, task.clusters, {soft, recipe.face_size_px});
+  const double target = estimated_rmse(*judge_, task.clusters, {soft, recipe.face_size_px}, stop);
   const uint32_t most = map_count(task.clusters);
   const auto maps_within = [&](double share) {
     return map_count(within(std::max(share * target, invisible_rmse), most, recipe, stop));
   };
   const uint32_t few = std::min(maps_within(share_with_few_maps), most * 3 / 5);
-  return ladder_->with_at_most(std::max(maps_within(share_of_cluster_error), few));
+  return ladder_->with_at_most(std::max(maps_within(share_of_cluster_error), few), stop);
 }
 
 double ErrorSearch::expected_rmse(const WorldKey& key, const SampledLights& lights, const SampledView& view,

@@ -73,7 +73,7 @@ std::vector<uint32_t> ErrorLadder::centers_at(size_t rung) const {
   return centers;
 }
 
-const std::vector<MapMember>& ErrorLadder::members(size_t rung) const {
+const std::vector<MapMember>& ErrorLadder::members(size_t rung, const std::stop_token& stop) const {
   const size_t best = rungs_[rung].best;
   if (const auto known = members_.find(best); known != members_.end()) return known->second;
   if (members_.size() >= most_kept_members) members_.clear();
@@ -82,28 +82,29 @@ const std::vector<MapMember>& ErrorLadder::members(size_t rung) const {
   for (uint32_t light = 0; light < center.size(); ++light)
     if (center[light] == light) centers.push_back(light);
   std::vector<std::vector<uint32_t>> near(center.size());
-  for (uint32_t light = 0; light < center.size(); ++light)
+  for (uint32_t light = 0; light < center.size(); ++light) {
+    stop_if_asked(stop);
     if (center[light] != light) candidates_.nearest(light, centers, MapSearch::most_candidates, near[light]);
-  return members_.emplace(best, share_out(samples_, center, near)).first->second;
+  }
+  return members_.emplace(best, share_out(samples_, center, near, stop)).first->second;
 }
 
-std::vector<MapMember> ErrorLadder::with_at_most(uint32_t maps) const {
+std::vector<MapMember> ErrorLadder::with_at_most(uint32_t maps, const std::stop_token& stop) const {
   const auto found = std::find_if(rungs_.begin(), rungs_.end(), [&](const Rung& rung) { return rung.maps <= maps; });
-  return members(found == rungs_.end() ? rungs_.size() - 1 : static_cast<size_t>(found - rungs_.begin()));
+  return members(found == rungs_.end() ? rungs_.size() - 1 : static_cast<size_t>(found - rungs_.begin()), stop);
 }
 
 std::vector<MapMember> ErrorLadder::within(double most_rmse, const LightSamples& judge, const ShadowReading& reading,
                                            const std::stop_token& stop) const {
   size_t fewest = 0, most = rungs_.size() - 1;  // numbers of rungs from the one with the fewest maps
   while (fewest < most) {
-    stop_if_asked(stop);
     const size_t middle = (fewest + most) / 2;
-    if (estimated_rmse(judge, members(rungs_.size() - 1 - middle), reading) <= most_rmse)
+    if (estimated_rmse(judge, members(rungs_.size() - 1 - middle, stop), reading, stop) <= most_rmse)
       most = middle;
     else
       fewest = middle + 1;
   }
-  return members(rungs_.size() - 1 - fewest);
+  return members(rungs_.size() - 1 - fewest, stop);
 }
 
 }  // namespace chandelier

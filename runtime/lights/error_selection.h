@@ -29,10 +29,11 @@ class ErrorLadder {
   uint32_t fewest_maps() const { return rungs_.back().maps; }
   /// The best found with at most `maps` (or fewest_maps(), where that is more), by the error of hard shadows with each
   /// light in one map; then lights without a map of their own may take shares of several (share_out()).
-  std::vector<MapMember> with_at_most(uint32_t maps) const;
+  /// Throws SearchStopped.
+  std::vector<MapMember> with_at_most(uint32_t maps, const std::stop_token& stop = {}) const;
   /// The fewest maps whose estimated_rmse() is at most `most_rmse`, looked for as if that never rose with their number;
   /// all maps where none are found. `judge` is of the same view and lights, but has
-  /// other points than the ladder was made for, on which it does better than anywhere else.
+  /// other points than the ladder was made for, on which it does better than anywhere else. Throws SearchStopped.
   std::vector<MapMember> within(double most_rmse, const LightSamples& judge, const ShadowReading& reading,
                                 const std::stop_token& stop = {}) const;
 
@@ -58,7 +59,7 @@ class ErrorLadder {
   void thin_out();
   void find_best();
   std::vector<uint32_t> centers_at(size_t rung) const;
-  const std::vector<MapMember>& members(size_t rung) const;
+  const std::vector<MapMember>& members(size_t rung, const std::stop_token& stop) const;
 
   const LightSamples& samples_;
   MapCandidates candidates_;

@@ -99,17 +99,19 @@ SampledLights sampled_lights(const World& world, std::span<const LightId> ids) {
 LightSamples::LightSamples(const SampledScene& scene, SampledLights lights, const Camera& camera, float aspect,
                            const SampleSettings& settings, const std::stop_token& stop)
     : scene_(scene), lights_(std::move(lights)) {
-  place_points(camera, aspect, settings);
+  place_points(camera, aspect, settings, stop);
   sees_.assign(lights_.shadowed.size() * points_.size(), unknown);
   light_points(camera, stop);
   expose(settings.exposure_ev);
 }
 
-void LightSamples::place_points(const Camera& camera, float aspect, const SampleSettings& settings) {
+void LightSamples::place_points(const Camera& camera, float aspect, const SampleSettings& settings,
+                                const std::stop_token& stop) {
   const CameraAxes axes = axes_of(camera);
   const float half_height = std::tan(camera.yfov_rad * 0.5f);
   cell_count_ = settings.columns * settings.rows;
   for (uint32_t cell = 0; cell < cell_count_; ++cell) {
+    stop_if_asked(stop);
     const uint32_t place = 2 * (cell + settings.scatter * cell_count_);
     const float x =
         (static_cast<float>(cell % settings.columns) + scattered(place)) / static_cast<float>(settings.columns);
@@ -151,6 +153,7 @@ void LightSamples::light_points(const Camera& camera, const std::stop_token& sto
     }
   }
   for (const pack::Light& shadowless : lights_.shadowless) {
+    stop_if_asked(stop);
     for (uint32_t p = 0; p < points_.size(); ++p) {
       const glm::vec3 added = added_by(shadowless, p, camera);
       points_[p].unshadowable += added;

@@ -107,7 +107,7 @@ class LightSamples {
  private:
   static constexpr uint8_t unknown = 2;
 
-  void place_points(const Camera& camera, float aspect, const SampleSettings& settings);
+  void place_points(const Camera& camera, float aspect, const SampleSettings& settings, const std::stop_token& stop);
   glm::vec3 added_by(const pack::Light& light, uint32_t point, const Camera& camera) const;
   void light_points(const Camera& camera, const std::stop_token& stop);
   void expose(const std::optional<float>& exposure_ev);

@@ -26,9 +26,11 @@ MapSearch::MapSearch(const LightSamples& samples, const MapCandidates& candidate
       map_count_(static_cast<uint32_t>(samples.lights().size())) {
   const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);
   contributions_.resize(map_count_);
-  for (uint32_t light = 0; light < map_count_; ++light)
+  for (uint32_t light = 0; light < map_count_; ++light) {
+    stop_if_asked(stop_);
     for (const auto& contribution : samples.contributions(light))
       contributions_[light].push_back({contribution.point, glm::dot(contribution.radiance, weights)});
+  }
   for (const auto& point : samples.points()) {
     luminance_.push_back(glm::dot(point.reference, weights));
     reference_.push_back(shown_(luminance_.back()));
@@ -156,6 +158,7 @@ bool MapSearch::drop(uint32_t center) {
   --map_count_;
   for (uint32_t light = 0; light < center_.size(); ++light) {
     if (center_[light] != center) continue;
+    stop_if_asked(stop_);
     const uint32_t to = best_move(light).second;
     if (to == center) return false;
     move(light, to);
@@ -216,6 +219,7 @@ void MapSearch::settle() {
     moved = false;
     for (uint32_t light = 0; light < center_.size(); ++light) {
       if (is_center_[light]) continue;
+      stop_if_asked(stop_);
       const auto [change, to] = known_best_move(light);
       if (!(change < -1e-6 * error_)) continue;
       move(light, to);

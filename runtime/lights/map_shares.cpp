@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lights/search_stopped.h"
 #include "lights/shown_curve.h"
 
 namespace chandelier {
@@ -24,7 +25,7 @@ struct Share {
 // Shares of all lights, and the picture that they make: one luminance for each point.
 class Sharing {
  public:
-  Sharing(const LightSamples& samples, std::span<const uint32_t> center);
+  Sharing(const LightSamples& samples, std::span<const uint32_t> center, const std::stop_token& stop);
 
   double error() const { return error_; }  // sum of squares
   const std::vector<Share>& shares(uint32_t light) const { return shares_[light]; }
@@ -67,7 +68,8 @@ class Sharing {
   double error_ = 0.0;
 };
 
-Sharing::Sharing(const LightSamples& samples, std::span<const uint32_t> center) : samples_(samples) {
+Sharing::Sharing(const LightSamples& samples, std::span<const uint32_t> center, const std::stop_token& stop)
+    : samples_(samples) {
   const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);
   for (const auto& point : samples.points()) {
     reference_.push_back(glm::dot(point.reference, weights));
@@ -75,6 +77,7 @@ Sharing::Sharing(const LightSamples& samples, std::span<const uint32_t> center) 
   }
   contributions_.resize(center.size());
   for (uint32_t light = 0; light < center.size(); ++light) {
+    stop_if_asked(stop);
     shares_.push_back({{center[light], 1.0f}});
     for (const auto& contribution : samples.contributions(light)) {
       contributions_[light].push_back({contribution.point, glm::dot(contribution.radiance, weights)});
@@ -192,21 +195,27 @@ void Sharing::tidy(uint32_t light) {
 }  // namespace
 
 std::vector<MapMember> share_out(const LightSamples& samples, std::span<const uint32_t> center,
-                                 std::span<const std::vector<uint32_t>> candidates) {
+                                 std::span<const std::vector<uint32_t>> candidates, const std::stop_token& stop) {
   std::vector<std::vector<uint32_t>> near(center.size());
   for (uint32_t light = 0; light < center.size(); ++light)
     for (const uint32_t other : candidates[light])
       if (center[light] != light && center[other] == other && near[light].size() < most_candidates)
         near[light].push_back(other);
 
-  Sharing sharing(samples, center);
+  Sharing sharing(samples, center, stop);
   const double unshared = sharing.error();
   bool moved = true;
   for (uint32_t pass = 0; moved && pass < most_passes; ++pass) {
     moved = false;
-    for (uint32_t light = 0; light < center.size(); ++light) moved = sharing.improve(light, near[light]) || moved;
+    for (uint32_t light = 0; light < center.size(); ++light) {
+      stop_if_asked(stop);
+      moved = sharing.improve(light, near[light]) || moved;
+    }
   }
-  for (uint32_t light = 0; light < center.size(); ++light) sharing.tidy(light);
+  for (uint32_t light = 0; light < center.size(); ++light) {
+    stop_if_asked(stop);
+    sharing.tidy(light);
+  }
 
   std::vector<MapMember> members;
   const bool pays = sharing.error() < unshared;

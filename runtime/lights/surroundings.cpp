@@ -7,7 +7,6 @@ namespace chandelier {
 const rays::PackRays& Surroundings::rays() {
   if (!rays_) rays_.emplace(world_.pack());
   if (world_.instances_version() == instances_) return *rays_;
-  if (by_error_) by_error_->stop();  // its thread reads them
   for (const InstanceId id : world_.instances_changed_since(instances_))
     rays_->set_transform(id, world_.instances()[id].world_from_local);
   instances_ = world_.instances_version();

@@ -4,6 +4,7 @@
 #include "rays/pack_rays.h"
 
 #include <span>
+#include <utility>
 
 namespace chandelier::rays {
 namespace {
@@ -49,10 +50,10 @@ PackRays::PackRays(const pack::View& pack)
 }
 
 void PackRays::gather_triangles() {
-  triangles_.resize(pack_.triangle_bvh_items.size());
-  std::vector<uint32_t> batch_of_triangle(triangles_.empty() ? 0 : pack_.indices.size() / 3, pack::none);
+  std::vector<Triangle> triangles(pack_.triangle_bvh_items.size());
+  std::vector<uint32_t> batch_of_triangle(triangles.empty() ? 0 : pack_.indices.size() / 3, pack::none);
   for (const pack::Mesh& mesh : pack_.meshes) {
-    for (uint32_t b = mesh.first_batch; b < mesh.first_batch + mesh.batch_count && !triangles_.empty(); ++b) {
+    for (uint32_t b = mesh.first_batch; b < mesh.first_batch + mesh.batch_count && !triangles.empty(); ++b) {
       const auto first = batch_of_triangle.begin() + pack_.batches[b].first_index / 3;
       std::fill(first, first + pack_.batches[b].index_count / 3, b);
     }
@@ -61,13 +62,13 @@ void PackRays::gather_triangles() {
       const uint32_t first = pack_.triangle_bvh[n].leaf / 16;
       for (uint32_t item = first; item < first + pack_.triangle_bvh[n].leaf % 16; ++item) {
         const uint32_t triangle = pack_.triangle_bvh_items[item].triangle;
-        triangles_[item].batch = batch_of_triangle[triangle];
+        triangles[item].batch = batch_of_triangle[triangle];
         for (uint32_t corner = 0; corner < 3; ++corner)
-          triangles_[item].corners_ls[corner] =
-              pack_.positions[pack_.indices[3 * triangle + corner].vertex].position_ls;
+          triangles[item].corners_ls[corner] = pack_.positions[pack_.indices[3 * triangle + corner].vertex].position_ls;
       }
     }
   }
+  triangles_ = std::make_shared<const std::vector<Triangle>>(std::move(triangles));
 }
 
 // False if its triangles are in no tree.
@@ -133,7 +134,7 @@ bool PackRays::cast_at_instance(uint32_t instance, const glm::vec3& from_ws, con
   const pack::Mesh& mesh = pack_.meshes[instances_[instance].mesh];
   const uint32_t end = mesh.first_node + mesh.node_count;
   const bool stops = walk(pack_.triangle_bvh, mesh.first_node, end, ray_ls, [&](uint32_t item) {
-    const Triangle& triangle = triangles_[item];
+    const Triangle& triangle = (*triangles_)[item];
     const float t = ray_ls.meet_triangle(triangle.corners_ls);
     if (t == INFINITY || !is_met(triangle.batch, meets)) return false;
     ray_ls.farthest = t;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct Hit {
 enum class Meets { surfaces, casters };
 
 /// Rays against the triangles of a pack at rest; set_transform() moves instances. Alpha-masked materials are never hit,
-/// since textures are not read. Several threads may call the const functions.
+/// since textures are not read. Several threads may call the const functions. Copies share the triangles; each has
+/// instances of its own.
 class PackRays {
  public:
   /// What `pack` points to must outlive it. A pack without hierarchies is searched box by box, which is slow.
@@ -78,11 +80,11 @@ class PackRays {
   bool is_passed(uint32_t instance, Meets meets) const;
 
   pack::View pack_;
-  std::vector<pack::Instance> instances_;      // as they stand now
-  std::vector<Triangle> triangles_;            // as triangle_bvh_items
-  std::vector<glm::mat4x3> local_from_world_;  // one per instance
-  std::vector<uint32_t> unsorted_instances_;   // with a tree of their own, but not in instance_bvh
-  std::vector<uint32_t> loose_;                // batch instances that are in no tree
+  std::vector<pack::Instance> instances_;                   // as they stand now
+  std::shared_ptr<const std::vector<Triangle>> triangles_;  // as triangle_bvh_items; one for all copies
+  std::vector<glm::mat4x3> local_from_world_;               // one per instance
+  std::vector<uint32_t> unsorted_instances_;                // with a tree of their own, but not in instance_bvh
+  std::vector<uint32_t> loose_;                             // batch instances that are in no tree
   std::vector<bool> is_moved_;   // of each instance: set_transform() was called, so the lists above are wrong
   std::vector<uint32_t> moved_;  // those instances
 };

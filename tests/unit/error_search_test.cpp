@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
+#include <stop_token>
 #include <thread>
 
 #include "lights/light_list.h"
+#include "lights/map_shares.h"
+#include "lights/search_stopped.h"
 #include "sampled_scene.h"
 
 namespace chandelier {
@@ -155,6 +159,124 @@ TEST(ErrorDrivenWorldTest, ASearchIsStoppedWhenItsWorldGoes) {
     select_lights(world, by_error(), from_above(), aspect,
                   {.surroundings = &surroundings, .search_beside_frames = true});
   }
+}
+
+// Camera A, B for one frame, and A again, as a window that does not rest there may have it.
+TEST(ErrorDrivenWorldTest, AnExactAnswerOutlastsTheSearchOfAnotherView) {
+  const pack::File pack = test::pillars(3).open();
+  const World world(pack);
+  Surroundings surroundings(world);
+  const SelectionInputs inputs{.surroundings = &surroundings, .search_beside_frames = true};
+  Camera other = from_above();
+  other.eye_ws.x += 1.0f;
+  const LightList exact = when_found(world, by_error(4), from_above(), surroundings, inputs);
+  for (const bool has_ended : {false, true}) {  // when the camera is back at A
+    EXPECT_TRUE(select_lights(world, by_error(4), other, aspect, inputs).is_provisional);
+    while (has_ended && !surroundings.has_news()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    LightList back = select_lights(world, by_error(4), from_above(), aspect, inputs);
+    EXPECT_FALSE(back.is_provisional);
+    while (!has_ended && !surroundings.has_news()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    back = select_lights(world, by_error(4), from_above(), aspect, inputs);
+    EXPECT_FALSE(back.is_provisional);
+    expect_equal(back, exact);
+    EXPECT_FALSE(surroundings.has_news());
+  }
+  expect_equal(when_found(world, by_error(4), other, surroundings, inputs), fresh(world, by_error(4), other));
+}
+
+// An instance that moves every frame. Searches go on meanwhile, each to its end.
+TEST(ErrorDrivenWorldTest, AnswersComeWhileAnInstanceMovesEveryFrame) {
+  constexpr uint32_t most_frames = 60000;
+  const pack::File pack = test::pillars(4).open();
+  World world(pack);
+  Surroundings surroundings(world);
+  const SelectionInputs inputs{.surroundings = &surroundings, .search_beside_frames = true};
+  ASSERT_NE(fresh(world, by_error()).maps.size(), 5u);
+  uint32_t frame = 0, answers = 0;
+  size_t maps = 0;
+  for (const uint32_t asked : {5u, 3u}) {  // the number of maps tells whose answer it is
+    for (; maps != asked && frame < most_frames; ++frame) {
+      const float x = 0.001f * static_cast<float>(frame % 1000);
+      world.set_transform(1, {glm::vec4(1, 0, 0, x), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0)});
+      const LightList list = select_lights(world, by_error(asked), from_above(), aspect, inputs);
+      EXPECT_TRUE(list.is_provisional);
+      expect_sound(world, list);
+      maps = list.maps.size();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    answers += maps == asked;
+  }
+  EXPECT_EQ(answers, 2u);
+  // When it rests, where it rests counts.
+  expect_equal(when_found(world, by_error(3), from_above(), surroundings, inputs), fresh(world, by_error(3)));
+}
+
+// A frame before has no say, whatever the stability: the same is asked, and the answer is the same.
+TEST(ErrorDrivenWorldTest, DependsOnNoFrameBefore) {
+  const pack::File pack = test::pillars(3).open();
+  const World world(pack);
+  Recipe recipe = by_error();
+  const LightList expected = fresh(world, recipe);
+  std::vector<LightId> own(world.lights().size());
+  std::iota(own.begin(), own.end(), 0u);
+  Surroundings surroundings(world);
+  SelectionInputs inputs{.surroundings = &surroundings, .previous_centers = own};
+  recipe.stability = 0.9f;
+  expect_equal(select_lights(world, recipe, from_above(), aspect, inputs), expected);
+  inputs.search_beside_frames = true;
+  expect_equal(when_found(world, recipe, from_above(), surroundings, inputs), expected);
+  const std::vector<LightId> of_answer = centers_by_light(world, expected);
+  inputs.previous_centers = of_answer;
+  const LightList next = select_lights(world, recipe, from_above(), aspect, inputs);
+  EXPECT_FALSE(next.is_provisional);
+  expect_equal(next, expected);
+}
+
+// Whatever takes long ends when it is told to.
+TEST(SearchStoppedTest, EveryLongStepLooks) {
+  const test::Scene scene = test::pillars(3);
+  const test::Sampled s(scene, {.columns = 16, .rows = 9});
+  const auto count = static_cast<uint32_t>(s.samples->lights().size());
+  const ErrorLadder ladder(*s.samples, DynamicLights::cluster);
+  std::vector<uint32_t> own(count);
+  std::iota(own.begin(), own.end(), 0u);
+  std::vector<MapMember> members;
+  for (const uint32_t light : own) members.push_back({light, light, 0.0f});
+  std::stop_source source;
+  source.request_stop();
+  const std::stop_token stop = source.get_token();
+  EXPECT_THROW(LightSamples(s.sampled, {}, from_above(), aspect, {}, stop), SearchStopped);  // places points alone
+  EXPECT_THROW(ErrorLadder(*s.samples, DynamicLights::cluster, {}, stop), SearchStopped);
+  EXPECT_THROW(ladder.with_at_most(3, stop), SearchStopped);
+  EXPECT_THROW(ladder.within(0.01, *s.samples, test::hard, stop), SearchStopped);
+  EXPECT_THROW(share_out(*s.samples, own, std::vector<std::vector<uint32_t>>(count), stop), SearchStopped);
+  EXPECT_THROW(estimated_rmse(*s.samples, members, test::hard, stop), SearchStopped);
+  EXPECT_LE(ladder.with_at_most(3).size(), size_t{3} * count);  // and can be asked again
+}
+
+// As many points as ever up to 1,302 lights; then fewer, down to 9 rows.
+TEST(SampleGridTest, IsCoarserForManyLightsSoThatMemoryIsBounded) {
+  const auto points = [](size_t lights) {
+    const SampleSettings grid = sample_grid(lights, {});
+    return size_t{grid.columns} * grid.rows;
+  };
+  EXPECT_EQ(points(1), 192u * 108u);
+  for (const size_t lights : {size_t{130}, size_t{500}, size_t{1302}}) EXPECT_EQ(points(lights), 64u * 36u) << lights;
+  for (const size_t lights : {size_t{1303}, size_t{3000}, size_t{10000}, size_t{20833}})
+    EXPECT_LE(lights * points(lights), 3000000u) << lights;
+  EXPECT_EQ(points(20834), 16u * 9u);
+  EXPECT_EQ(points(1000000), 16u * 9u);
+
+  constexpr size_t count = 4000;
+  test::Scene scene;
+  scene.add(test::level_square(glm::vec3(0), 40), scene.add_material(test::plain_material(glm::vec3(0.8f))));
+  for (size_t i = 0; i < count; ++i)
+    scene.lights.push_back(test::point_light({0.001f * static_cast<float>(i) - 2.0f, 3, 0}, 1, 1000));
+  const test::Sampled s(scene, sample_grid(count, {}));
+  size_t entries = 0;
+  for (uint32_t light = 0; light < count; ++light) entries += s.samples->contributions(light).size();
+  EXPECT_EQ(entries, count * s.samples->points().size());  // all lights reach all points
+  EXPECT_LE(entries, 3000000u);
 }
 
 // A full copy of every selection, and every light as a candidate of every other, would be 2 · 1500² entries.
