@@ -106,8 +106,10 @@ struct Renderer::Impl {
         tile_pipeline(make_tile_pipeline(on)),
         shade(make_shade_pipelines(on)),
         tone(make_tone_pipelines(on)) {
-    resources.camera_draws = make_cull_state(on, lists_by_material(of.pack()));
-    resources.shadow_draws = make_cull_state(on, lists_for_shadows(of.pack()));
+    gpu::Uploader uploader(on, 0, {});
+    resources.camera_draws = make_cull_state(on, uploader, lists_by_material(of.pack()));
+    resources.shadow_draws = make_cull_state(on, uploader, lists_for_shadows(of.pack()));
+    uploader.finish();
     for (uint32_t i = 0; i < std::max(1u, options.frames_in_flight); ++i) slots.emplace_back(on);
   }
 

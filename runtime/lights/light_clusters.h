@@ -22,7 +22,7 @@ struct ClusterSettings {
   float z_far_m = 30.0f;
   DistanceScaling scaling = DistanceScaling::grow;  // README.md of this folder says why there are three
   DynamicLights dynamic_lights = DynamicLights::cluster;
-  float stability = 0.0f;  // 0 to below 1: how strongly the frame before is preferred; 0 not at all
+  float stability = 0.0f;                      // 0 to below 1: how strongly the frame before is preferred; 0 not at all
   std::span<const uint32_t> previous_centers;  // of each light its centre a frame ago, or no_center; or nothing at all
 };
 

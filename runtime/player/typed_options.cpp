@@ -85,7 +85,8 @@ std::string footer() {
 
 void declare_output(CLI::App& app, Typed& typed) {
   app.add_option("PACK", typed.pack, "The pack to draw, made by chandelier-bake");
-  app.add_option("--output", typed.output, fmt::format("Draw into this file, without a display: {}", image_kinds_text()))
+  app.add_option("--output", typed.output,
+                 fmt::format("Draw into this file, without a display: {}", image_kinds_text()))
       ->type_name("FILE")
       ->group("Output");
   app.add_option("--size", typed.size, "Width and height of the picture, pixels")
@@ -124,10 +125,10 @@ void declare_view(CLI::App& app, Typed& typed) {
       ->check(number_between(0.0, 1e6))
       ->capture_default_str()
       ->group("View");
-  app.add_option(
-         "--headlight", typed.headlight,
-         "A light in the camera, equally bright at any distance: auto, on, off, or the radiance of a white surface that "
-         "faces it. auto: on if the pack has no lights and there is no --ambient")
+  app.add_option("--headlight", typed.headlight,
+                 "A light in the camera, equally bright at any distance: auto, on, off, or the radiance of a white "
+                 "surface that "
+                 "faces it. auto: on if the pack has no lights and there is no --ambient")
       ->type_name("auto|on|off|R")
       ->capture_default_str()
       ->group("View");
@@ -203,20 +204,22 @@ void declare_recipe(CLI::App& app, Typed& typed) {
 
 void declare_budget(CLI::App& app, Typed& typed) {
   const std::string group =
-      "Budget (light clusters: chooses d-init, not below a given --d-init. --select error-driven: limits the selection. "
+      "Budget (light clusters: chooses d-init, not below a given --d-init. --select error-driven: limits the "
+      "selection. "
       "Maps and bytes come before the error)";
   app.add_option("--max-shadow-maps", typed.max_shadow_maps, "Largest number of shadow maps in a frame")
       ->type_name("N")
       ->check(number_between(1, 1e9))
       ->group(group);
-  app.add_option("--max-shadow-bytes", typed.max_shadow_bytes, "Largest size of all shadow maps of a frame together, MiB")
+  app.add_option("--max-shadow-bytes", typed.max_shadow_bytes,
+                 "Largest size of all shadow maps of a frame together, MiB")
       ->type_name("MIB")
       ->check(number_between(1, 1 << 20))
       ->group(group);
-  app.add_option(
-         "--max-error", typed.max_error,
-         "Largest expected error of the shown picture, RMSE against one shadow map per light; takes the fewest maps that "
-         "meet it")
+  app.add_option("--max-error", typed.max_error,
+                 "Largest expected error of the shown picture, RMSE against one shadow map per light; takes the fewest "
+                 "maps that "
+                 "meet it")
       ->type_name("RMSE")
       ->check(number_between(0, 1))
       ->group(group);

@@ -206,7 +206,8 @@ void expect_penumbra(gpu::Device& device, const std::vector<pack::Light>& lights
 
 TEST_F(BiasTest, PenumbraIsThatOfADiscLight) {
   const pack::Light lamp = point_light({0, 4, 0}, 30, 20);
-  const frame::ShadowMap map = select_lights(world_of({{lamp}}), clustered(Filter::pcss, d_init_m, 1024), {}, 1.0f).maps[0];
+  const frame::ShadowMap map =
+      select_lights(world_of({{lamp}}), clustered(Filter::pcss, d_init_m, 1024), {}, 1.0f).maps[0];
   for (const float height_m : {0.02f, 0.5f, 1.0f, 1.5f, 2.0f})
     expect_penumbra(device(), {lamp}, height_m, map.filter_radius_m * height_m / (4.0f - height_m), 0.03f);
 }

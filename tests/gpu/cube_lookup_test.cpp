@@ -150,7 +150,9 @@ class CubeLookupTest : public GpuTest {
 
     const CullPipelines cull = make_cull_pipelines(device(), Cull::light_frustum, false);
     const CasterPipelines casters = make_caster_pipelines(device(), scene);
-    CullState draws = make_cull_state(device(), lists_for_shadows(pack.view()));
+    gpu::Uploader uploader(device(), 0, {});
+    CullState draws = make_cull_state(device(), uploader, lists_for_shadows(pack.view()));
+    uploader.finish();
     gpu::Retired retired;
     make_room(device(), {.maps = count, .views = view_count}, retired, draws);
     const gpu::Buffer map_buffer = upload(maps.list.maps);

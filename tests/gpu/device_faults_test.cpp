@@ -115,8 +115,8 @@ TEST_F(DeviceFaultsTest, LimitsAreChecked) {
   EXPECT_NE(refusal().find("no comparing sampler for D32_SFLOAT"), std::string::npos) << refusal();
 }
 
-// However many images a scene has.
-TEST_F(DeviceFaultsTest, ASceneIsUploadedInOneSubmit) {
+// One for the scene, however many images it has, and one for the draw lists.
+TEST_F(DeviceFaultsTest, ASceneIsUploadedInTwoSubmits) {
   replace("vkQueueSubmit2", submit);
   Scene scene;
   for (uint32_t i = 0; i < 20; ++i) {
@@ -132,7 +132,7 @@ TEST_F(DeviceFaultsTest, ASceneIsUploadedInOneSubmit) {
                             done = done_bytes;
                             all = all_bytes;
                           }});
-  EXPECT_EQ(calls["vkQueueSubmit2"], 1);
+  EXPECT_EQ(calls["vkQueueSubmit2"], 2);
   EXPECT_GT(all, 0u);
   EXPECT_GE(done, all);
 }

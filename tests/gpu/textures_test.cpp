@@ -158,7 +158,8 @@ TEST_F(TexturesTest, CutShadowsWithTransformedCoordinates) {
   }
 }
 
-// Stripes that run away from the eye: a square filter blurs them where the floor is seen at a slant, a long one does not.
+// Stripes that run away from the eye: a square filter blurs them where the floor is seen at a slant, a long one does
+// not.
 TEST_F(TexturesTest, AnisotropyKeepsWhatRunsAwayFromTheEyeSharp) {
   constexpr uint32_t side = 64;
   std::vector<uint32_t> texels;
@@ -168,8 +169,7 @@ TEST_F(TexturesTest, AnisotropyKeepsWhatRunsAwayFromTheEyeSharp) {
       texels.push_back(stripe == 0 ? 0xFF808080u : i % level_side / stripe % 2 ? white : 0xFF000000u);
   }
   Scene scene;
-  const pack::Image image{
-      .width = side, .height = side, .level_count = 7, .format = pack::ImageFormat::rgba8_unorm};
+  const pack::Image image{.width = side, .height = side, .level_count = 7, .format = pack::ImageFormat::rgba8_unorm};
   const uint32_t texture = scene.add_texture(image, std::as_bytes(std::span(texels)));
   scene.filter_textures();
   scene.add(level_square({0, 0, 0}, 4.0f), scene.add_material(unlit(texture)));

@@ -241,8 +241,8 @@ TEST(SpecularGlossiness, OfCrossedImagesTakesNoMoreMemoryThanIsCounted) {
   EXPECT_EQ(decode_image(scene, image).color.rgba.size(), std::size_t{4} * 1024 * 1024);
   const std::string error = error_of(crossed_images(16384).save("crossed"));  // two images of a gigabyte
   EXPECT_NE(
-      error.find("image 0: its shape and that of the specularGlossinessTexture it is used with differ too much to "
-                 "make one image of both (16384x1 and 1x16384)"),
+      error.find("image 0: its shape differs too much from that of its specularGlossinessTexture to make one image of "
+                 "both (16384x1 and 1x16384)"),
       std::string::npos)
       << error;
 }

@@ -19,11 +19,6 @@ enum class Step : uint32_t { find, count, append };
 constexpr VkBufferUsageFlags storage_use = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkBufferUsageFlags indirect_use = storage_use | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
-template <typename T>
-gpu::Buffer upload(const gpu::Device& device, const std::vector<T>& records) {
-  return gpu::upload_buffer(device, std::as_bytes(std::span(records)), storage_use);
-}
-
 void grow(const gpu::Device& device, uint64_t bytes, VkBufferUsageFlags usage, gpu::Retired& retired,
           gpu::Buffer& buffer) {
   if (buffer.handle && buffer.size_bytes >= bytes) return;
@@ -108,12 +103,12 @@ CullPipelines make_cull_pipelines(const gpu::Device& device, Cull answer, bool k
           gpu::make_compute_pipeline(device, plan_draws_comp, {keep_order}), step(Step::append)};
 }
 
-CullState make_cull_state(const gpu::Device& device, const DrawLists& lists) {
+CullState make_cull_state(const gpu::Device& device, gpu::Uploader& uploader, const DrawLists& lists) {
   CullState state;
   state.lists = lists.lists;
   state.block_count = static_cast<uint32_t>(lists.blocks.size());
-  state.order = upload(device, lists.order);
-  state.blocks = upload(device, lists.blocks);
+  state.order = uploader.buffer(std::as_bytes(std::span(lists.order)), storage_use);
+  state.blocks = uploader.buffer(std::as_bytes(std::span(lists.blocks)), storage_use);
   state.boxes =
       gpu::make_buffer(device, lists.blocks.size() * sizeof(frame::BlockBox), storage_use, gpu::Memory::device);
   state.totals = gpu::make_buffer(device, 4 * (2 * lists.lists.size() + 1),

@@ -39,7 +39,8 @@ struct CullState {
   gpu::Buffer draw_counts;    // u32: of each list in pass 0, then in pass 1 ...
   gpu::Buffer append_groups;  // indirect dispatches, one per pass
 };
-CullState make_cull_state(const gpu::Device& device, const DrawLists& lists);
+/// To be used once `uploader` has finished.
+CullState make_cull_state(const gpu::Device& device, gpu::Uploader& uploader, const DrawLists& lists);
 
 /// What a frame culls at a time.
 struct CullRoom {
