@@ -65,7 +65,7 @@ Recipe reference_of(Recipe recipe, bool has_area_lights) {
 
 }  // namespace
 
-FramePlan plan_frame(const World& world, const RenderSettings& settings, const RoundLimits& limits,
+FramePlan plan_frame(const World& world, const RenderSettings& settings, const GroupLimits& limits,
                      Surroundings* surroundings) {
   refuse_unknown_answers(settings.recipe);
   const float aspect = aspect_of(settings);
@@ -92,7 +92,7 @@ FramePlan plan_frame(const World& world, const RenderSettings& settings, const R
     plan.views = project_lights(plan.list, settings.camera, aspect, world.bounds(), plan.recipe.face_size_px);
   if (plan.recipe.deliver == Deliver::textures)
     place_visibility_rects(plan.list, settings.camera, settings.width, settings.height);
-  plan.rounds = plan_rounds(plan.list, plan.views, limits);
+  plan.groups = plan_groups(plan.list, plan.views, limits);
   plan.view = view_constants(settings, aspect);
   plan.views.push_back({.clip_from_center = plan.view.clip_from_eye, .center_ws = plan.view.eye_ws});
   plan.project_ms = ms_since(start);
@@ -121,12 +121,12 @@ FrameStats planned_stats(const World& world, const FramePlan& plan, const Render
   stats.shadow_maps = plan.recipe.filter == Filter::rays ? 0 : plan.list.maps.size();
   stats.shadow_views = plan.views.size() - 1;
   stats.shadow_bytes = stats.shadow_maps * map_bytes;
-  for (const Round& round : plan.rounds) {
-    const uint64_t held = stats.shadow_maps == 0 ? 0 : round.map_count * map_bytes;
+  for (const MapGroup& group : plan.groups) {
+    const uint64_t held = stats.shadow_maps == 0 ? 0 : group.map_count * map_bytes;
     stats.shadow_pool_bytes = std::max(stats.shadow_pool_bytes, held);
-    stats.visibility_bytes += round.visibility_bytes;
-    stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, round.visibility_bytes);
-    stats.shadow_rounds += round.map_count > 0;
+    stats.visibility_bytes += group.visibility_bytes;
+    stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, group.visibility_bytes);
+    stats.shadow_rounds += group.map_count > 0;
   }
   return stats;
 }

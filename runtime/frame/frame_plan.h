@@ -5,9 +5,9 @@
 
 #include "frame/frame_stats.h"
 #include "frame/render_settings.h"
-#include "frame/rounds.h"
 #include "lights/light_list.h"
 #include "lights/map_counter.h"
+#include "shadows/store/map_groups.h"
 #include "world/world.h"
 
 namespace chandelier {
@@ -16,14 +16,14 @@ struct FramePlan {
   Recipe recipe;  // as drawn: the reference's where light clusters would not pay
   LightList list;
   std::vector<frame::ShadowView> views;  // of all maps, then the camera's
-  std::vector<Round> rounds;
+  std::vector<MapGroup> groups;
   frame::ViewConstants view;
   double select_ms = 0.0;
   double project_ms = 0.0;
 };
 
 /// `surroundings` are needed as select_lights() needs them.
-FramePlan plan_frame(const World& world, const RenderSettings& settings, const RoundLimits& limits,
+FramePlan plan_frame(const World& world, const RenderSettings& settings, const GroupLimits& limits,
                      Surroundings* surroundings);
 
 /// Counts shadow_maps of planned_stats() for one d_init after another, in less time. For light clusters without walls,

@@ -8,7 +8,7 @@
 namespace chandelier {
 namespace {
 
-// The most of anything that a round of the frame needs.
+// The most of anything that a group of the frame needs.
 struct Needs {
   uint32_t cubes = 1;
   uint32_t views = 1;
@@ -17,10 +17,10 @@ struct Needs {
 
 Needs needs_of(const FramePlan& plan) {
   Needs needs;
-  for (const Round& round : plan.rounds) {
-    if (plan.recipe.filter != Filter::rays) needs.cubes = std::max(needs.cubes, round.map_count);
-    needs.views = std::max(needs.views, round.view_count);
-    needs.visibility_bytes = std::max(needs.visibility_bytes, round.visibility_bytes);
+  for (const MapGroup& group : plan.groups) {
+    if (plan.recipe.filter != Filter::rays) needs.cubes = std::max(needs.cubes, group.map_count);
+    needs.views = std::max(needs.views, group.view_count);
+    needs.visibility_bytes = std::max(needs.visibility_bytes, group.visibility_bytes);
   }
   return needs;
 }
@@ -50,8 +50,8 @@ void make_store(const gpu::Device& device, const Recipe& recipe, uint32_t cubes,
   resources.store_is_new = true;
 }
 
-void make_counters(const gpu::Device& device, size_t rounds, FrameSlot& slot, gpu::Buffer& counters) {
-  const VkDeviceSize bytes = (rounds + 1) * sizeof(frame::CullCounters);
+void make_counters(const gpu::Device& device, size_t groups, FrameSlot& slot, gpu::Buffer& counters) {
+  const VkDeviceSize bytes = (groups + 1) * sizeof(frame::CullCounters);
   constexpr VkBufferUsageFlags usage =
       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
   if (!counters.handle || counters.size_bytes < bytes) {
@@ -98,7 +98,7 @@ void make_room(const gpu::Device& device, const RenderSettings& settings, const 
   make_room(device, {.most_draws = UINT32_MAX, .one_pass = true}, slot.retired, resources.camera_draws);
   make_room(device, {.maps = needs.cubes, .views = needs.views, .most_draws = settings.most_caster_draws}, slot.retired,
             resources.shadow_draws);
-  make_counters(device, plan.rounds.size(), slot, resources.counters);
+  make_counters(device, plan.groups.size(), slot, resources.counters);
 }
 
 }  // namespace chandelier

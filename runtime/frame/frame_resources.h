@@ -3,11 +3,11 @@
 #pragma once
 
 #include "frame/frame_plan.h"
-#include "frame/targets.h"
 #include "gpu/frames.h"
 #include "gpu/timers.h"
 #include "lookup/tiles.h"
 #include "scene/gpu_scene.h"
+#include "shading/targets.h"
 #include "shadows/cull/cull.h"
 #include "shadows/store/cube_array.h"
 
@@ -22,10 +22,10 @@ struct FrameSlot {
   gpu::UploadArena uploads;
   gpu::Retired retired;
   gpu::Timers timers;
-  gpu::Buffer counters;  // frame CullCounters, read back: one for each round, then the camera's
+  gpu::Buffer counters;  // frame CullCounters, read back: one for each group, then the camera's
   gpu::Buffer exposure;  // frame LuminanceSum, read back
   FrameStats stats;
-  size_t rounds = 0;
+  size_t groups = 0;
   double record_ms = 0.0;
   bool is_read = true;  // stats are complete
 };
@@ -41,7 +41,7 @@ struct FrameResources {
   gpu::Streamed view, lights, maps, views;
   TileLists tiles;
   gpu::Buffer visibility;
-  gpu::Buffer counters;  // one per round, then the camera's
+  gpu::Buffer counters;  // one per group, then the camera's
 };
 
 /// Lights as uploaded: those with a shadow, then those without.

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "frame/targets.h"
+#include "shading/targets.h"
 
 namespace chandelier {
 

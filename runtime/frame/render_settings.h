@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "frame/recipe.h"
-#include "frame/visibility_query.h"
 #include "shadows/cull/draw_lists.h"
+#include "shadows/filter/visibility_query.h"
 #include "view/camera.h"
 
 namespace chandelier {

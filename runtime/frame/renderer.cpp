@@ -10,11 +10,11 @@
 #include <map>
 
 #include "frame/frame_resources.h"
-#include "frame/ray_visibility.h"
 #include "scene/world_changes.h"
 #include "shading/g_buffer.h"
 #include "shading/shade.h"
 #include "shading/tone_map.h"
+#include "shadows/filter/ray_visibility.h"
 #include "shadows/raster/caster_pass.h"
 
 namespace chandelier {
@@ -124,8 +124,8 @@ struct Renderer::Impl {
 
   void record_start(const Recording& frame);
   void record_uploads(const Recording& frame);
-  void record_shadow_maps(const Recording& frame, uint32_t round);
-  void record_light(const Recording& frame, const Round& round);
+  void record_shadow_maps(const Recording& frame, uint32_t group);
+  void record_light(const Recording& frame, const MapGroup& group);
   void record_end(const Recording& frame);
   void record_target(gpu::Commands cmd, const Target& target);
 };
@@ -154,7 +154,7 @@ Recording Renderer::Impl::prepare(gpu::Commands cmd, FrameSlot& slot, const Rend
   slot.reset();
   make_room(device, settings, planned.plan, slot, resources);
   slot.stats = planned.stats;
-  slot.rounds = planned.plan.rounds.size();
+  slot.groups = planned.plan.groups.size();
   slot.is_read = false;
   return {cmd, slot, settings, planned.plan};
 }
@@ -182,7 +182,7 @@ void Renderer::Impl::record_uploads(const Recording& frame) {
 void Renderer::Impl::record_start(const Recording& frame) {
   const auto& [cmd, slot, settings, plan] = frame;
   wait_for_frame_before(cmd);
-  slot.timers.start_frame(cmd, static_cast<uint32_t>(4 * plan.rounds.size() + 3));
+  slot.timers.start_frame(cmd, static_cast<uint32_t>(4 * plan.groups.size() + 3));
   record_uploads(frame);
   slot.timers.add_cpu("select", plan.select_ms);
   slot.timers.add_cpu("project", plan.project_ms);
@@ -194,7 +194,7 @@ void Renderer::Impl::record_start(const Recording& frame) {
                            .first_map = static_cast<uint32_t>(plan.views.size() - 1),
                            .map_count = 1,
                            .view_count = 1,
-                           .group = static_cast<uint32_t>(plan.rounds.size())};
+                           .group = static_cast<uint32_t>(plan.groups.size())};
     record_boxes(cmd, device, camera_cull, scene, camera, resources.camera_draws);
     record_cull(cmd, device, camera_cull, scene, camera, resources.camera_draws);
     record_g_buffer(cmd, g_buffer, scene, resources.camera_draws, resources.view.buffer(), resources.targets);
@@ -205,10 +205,10 @@ void Renderer::Impl::record_start(const Recording& frame) {
                resources.targets, resources.tiles);
 }
 
-// Draws the shadow maps of a round.
+// Draws the shadow maps of a group.
 void Renderer::Impl::record_shadow_maps(const Recording& frame, uint32_t number) {
   const auto& [cmd, slot, settings, plan] = frame;
-  const Round& round = plan.rounds[number];
+  const MapGroup& group = plan.groups[number];
   const Cull answer = plan.recipe.cull;
   if (!cull.contains(answer)) cull.emplace(answer, make_cull_pipelines(device, answer, false));
   const CullPipelines& culling = cull.at(answer);
@@ -216,9 +216,9 @@ void Renderer::Impl::record_shadow_maps(const Recording& frame, uint32_t number)
   const CullInput input{.views = resources.views.buffer(),
                         .maps = resources.maps.buffer(),
                         .counters = resources.counters,
-                        .first_map = round.first_map,
-                        .map_count = round.map_count,
-                        .view_count = round.view_count,
+                        .first_map = group.first_map,
+                        .map_count = group.map_count,
+                        .view_count = group.view_count,
                         .group = number};
   uint32_t passes = 1;
   {
@@ -230,13 +230,13 @@ void Renderer::Impl::record_shadow_maps(const Recording& frame, uint32_t number)
   begin_casters(cmd, resources.store);
   for (uint32_t pass = 0; pass < passes; ++pass) {
     if (pass > 0) record_append(cmd, culling, scene, input, culled, pass);
-    record_casters(cmd, casters, scene, culled, input.views, resources.store, round.map_count, pass);
+    record_casters(cmd, casters, scene, culled, input.views, resources.store, group.map_count, pass);
   }
   end_casters(cmd, resources.store);
 }
 
-// Adds the light of a round's lights. Where visibility comes from rays it is in `visibility` already.
-void Renderer::Impl::record_light(const Recording& frame, const Round& round) {
+// Adds the light of a group's lights. Where visibility comes from rays it is in `visibility` already.
+void Renderer::Impl::record_light(const Recording& frame, const MapGroup& group) {
   const auto& [cmd, slot, settings, plan] = frame;
   ShadeInput input{.view = resources.view.buffer(),
                    .lights = resources.lights.buffer(),
@@ -244,14 +244,14 @@ void Renderer::Impl::record_light(const Recording& frame, const Round& round) {
                    .views = resources.views.buffer(),
                    .visibility = resources.visibility,
                    .tiles = resources.tiles,
-                   .first_light = round.first_light,
-                   .light_count = round.light_count,
+                   .first_light = group.first_light,
+                   .light_count = group.light_count,
                    .projections = projections_of(plan.list.maps)};
   if (plan.recipe.deliver == Deliver::textures && plan.recipe.filter != Filter::rays) {
     const Timed timed(frame, "deliver");
     record_visibility(cmd, device, shade, plan.recipe, input, resources.store, resources.targets);
   }
-  input.light_count += round.shadowless_count;
+  input.light_count += group.shadowless_count;
   const Timed timed(frame, "shade");
   record_shade(cmd, device, shade, plan.recipe, input, resources.store, resources.targets);
 }
@@ -266,7 +266,7 @@ void Renderer::Impl::record_end(const Recording& frame) {
   is_drawn = true;
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
-  const VkBufferCopy counts{.size = (plan.rounds.size() + 1) * sizeof(frame::CullCounters)};
+  const VkBufferCopy counts{.size = (plan.groups.size() + 1) * sizeof(frame::CullCounters)};
   cmd->vkCmdCopyBuffer(cmd, resources.counters.handle, slot.counters.handle, 1, &counts);
   const VkBufferCopy exposure{.size = sizeof(frame::LuminanceSum)};
   cmd->vkCmdCopyBuffer(cmd, resources.luminance_sums.handle, slot.exposure.handle, 1, &exposure);
@@ -280,9 +280,9 @@ void Renderer::Impl::record(const Recording& frame) {
   const bool store_is_new = resources.store_is_new;
   try {
     record_start(frame);
-    for (uint32_t round = 0; round < plan.rounds.size(); ++round) {
-      if (plan.rounds[round].map_count > 0) record_shadow_maps(frame, round);
-      record_light(frame, plan.rounds[round]);
+    for (uint32_t group = 0; group < plan.groups.size(); ++group) {
+      if (plan.groups[group].map_count > 0) record_shadow_maps(frame, group);
+      record_light(frame, plan.groups[group]);
     }
     record_end(frame);
   } catch (...) {  // what was recorded is lost: the next frame does it again
@@ -321,7 +321,7 @@ FrameStats Renderer::Impl::draw(FrameSlot& slot, const RenderSettings& settings)
   return stats;
 }
 
-// The caller's rays stand between the device's work: first what the camera sees, then each round's light.
+// The caller's rays stand between the device's work: first what the camera sees, then each group's light.
 void Renderer::Impl::draw_by_rays(FrameSlot& slot, const RenderSettings& settings) {
   const gpu::Buffer readback = make_surface_readback(device, settings.width, settings.height);
   gpu::run_once(device, [&](gpu::Commands cmd) {
@@ -332,11 +332,11 @@ void Renderer::Impl::draw_by_rays(FrameSlot& slot, const RenderSettings& setting
   const auto points = surface_points(readback, plan.view);
   const gpu::Buffer& visibility = resources.visibility;
   const std::span<uint8_t> bytes(reinterpret_cast<uint8_t*>(visibility.mapped), visibility.size_bytes);
-  for (const Round& round : plan.rounds) {
+  for (const MapGroup& group : plan.groups) {
     const auto start = Clock::now();
-    fill_visibility(plan, round, points, settings.width, settings.visibility, bytes);
+    fill_visibility(plan, group, points, settings.width, settings.visibility, bytes);
     slot.timers.add_cpu("filter", ms_since(start));
-    gpu::run_once(device, [&](gpu::Commands cmd) { record_light({cmd, slot, settings, plan}, round); });
+    gpu::run_once(device, [&](gpu::Commands cmd) { record_light({cmd, slot, settings, plan}, group); });
   }
   gpu::run_once(device, [&](gpu::Commands cmd) { record_end({cmd, slot, settings, plan}); });
 }
@@ -358,12 +358,12 @@ const FrameStats& Renderer::Impl::read_stats(FrameSlot& slot) {
   frame::LuminanceSum exposure;
   std::memcpy(&exposure, slot.exposure.mapped, sizeof exposure);
   stats.exposure_ev = exposure.exposure_ev;
-  for (size_t i = 0; i < slot.rounds; ++i) {
-    frame::CullCounters round;
-    std::memcpy(&round, slot.counters.mapped + i * sizeof round, sizeof round);
-    stats.shadow_draws += round.draws;
-    stats.shadow_triangles += round.triangles + (uint64_t{round.triangles_high} << 32);
-    stats.shadow_overflow_passes += round.further_passes;
+  for (size_t i = 0; i < slot.groups; ++i) {
+    frame::CullCounters group;
+    std::memcpy(&group, slot.counters.mapped + i * sizeof group, sizeof group);
+    stats.shadow_draws += group.draws;
+    stats.shadow_triangles += group.triangles + (uint64_t{group.triangles_high} << 32);
+    stats.shadow_overflow_passes += group.further_passes;
   }
   return stats;
 }

@@ -258,4 +258,11 @@ void dispatch_over(Commands cmd, const Pipeline& pipeline, uint32_t width, uint3
   cmd->vkCmdDispatch(cmd, (width + x - 1) / x, (height + y - 1) / y, 1);
 }
 
+void set_viewport(Commands cmd, uint32_t width, uint32_t height) {
+  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height), 0.0f, 1.0f};
+  const VkRect2D scissor{{0, 0}, {width, height}};
+  cmd->vkCmdSetViewport(cmd, 0, 1, &viewport);
+  cmd->vkCmdSetScissor(cmd, 0, 1, &scissor);
+}
+
 }  // namespace chandelier::gpu

@@ -75,5 +75,7 @@ void push_constants(Commands cmd, const Pipeline& pipeline, const Constants& con
 void dispatch(Commands cmd, const Device& device, const Pipeline& pipeline, uint64_t threads);
 /// A thread for each pixel of a picture, in work groups that are rectangles.
 void dispatch_over(Commands cmd, const Pipeline& pipeline, uint32_t width, uint32_t height);
+/// Covers an image `width` by `height` with viewport and scissor.
+void set_viewport(Commands cmd, uint32_t width, uint32_t height);
 
 }  // namespace chandelier::gpu

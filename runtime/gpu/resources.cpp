@@ -77,6 +77,13 @@ Owned<VkSampler> make_sampler(const Device& device, const VkSamplerCreateInfo& i
   return {device.handle, sampler, device->vkDestroySampler};
 }
 
+Owned<VkSampler> make_texel_sampler(const Device& device) {
+  return make_sampler(device, {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                               .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                               .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                               .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
+}
+
 void run_once(const Device& device, const std::function<void(Commands)>& record) {
   const VkCommandBufferAllocateInfo allocate_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                                   .commandPool = device.command_pool,

@@ -76,6 +76,8 @@ Image make_image(const Device& device, const ImageInfo& info);
 Owned<VkImageView> make_view(const Device& device, const Image& image, VkImageViewType type, uint32_t first_layer,
                              uint32_t layer_count);
 Owned<VkSampler> make_sampler(const Device& device, const VkSamplerCreateInfo& info);
+/// For shaders that read an image texel by texel.
+Owned<VkSampler> make_texel_sampler(const Device& device);
 
 /// Records commands, submits them and waits until they are done.
 void run_once(const Device& device, const std::function<void(Commands)>& record);

@@ -15,14 +15,14 @@ namespace chandelier {
 namespace {
 
 // The point itself and seven darts in the unit disc: as few as a pixel reads, whose own lie elsewhere.
-constexpr std::array<glm::vec2, frame::poisson_taps> poisson_disc{{{0.000f, 0.000f},
-                                                                   {-0.092f, -0.905f},
-                                                                   {-0.698f, 0.252f},
-                                                                   {0.719f, -0.070f},
-                                                                   {0.477f, 0.683f},
-                                                                   {-0.434f, -0.369f},
-                                                                   {0.301f, -0.520f},
-                                                                   {-0.165f, 0.666f}}};
+constexpr std::array<glm::vec2, frame::disc_taps> poisson_disc{{{0.000f, 0.000f},
+                                                                {-0.092f, -0.905f},
+                                                                {-0.698f, 0.252f},
+                                                                {0.719f, -0.070f},
+                                                                {0.477f, 0.683f},
+                                                                {-0.434f, -0.369f},
+                                                                {0.301f, -0.520f},
+                                                                {-0.165f, 0.666f}}};
 // Numbers of shadows/filter/receiver_disc.glsl and pcf.glsl.
 constexpr float smoothing_texels = 1.5f;
 constexpr float penumbra_per_radius = 0.27f;
@@ -69,7 +69,7 @@ glm::vec3 tap_place(const Receiver& receiver, const glm::vec2& at_m) {
 float pcf(const LightSamples& samples, uint32_t center, const Receiver& receiver, float radius_m) {
   uint32_t lit = 0;
   for (const glm::vec2& tap : poisson_disc) lit += samples.is_lit(center, tap_place(receiver, radius_m * tap)) ? 1 : 0;
-  return static_cast<float>(lit) / frame::poisson_taps;
+  return static_cast<float>(lit) / frame::disc_taps;
 }
 
 // pcss.glsl:cube_pcss
@@ -84,7 +84,7 @@ float pcss(const LightSamples& samples, uint32_t center, const Receiver& receive
     ++count;
     sum += at;
   }
-  if (count == 0 || count == frame::poisson_taps) return count == 0 ? 1.0f : 0.0f;
+  if (count == 0 || count == frame::disc_taps) return count == 0 ? 1.0f : 0.0f;
   const float mean = sum / static_cast<float>(count);
   return pcf(samples, center, receiver, glm::clamp(light_m * (1.0f - mean) / mean, smoothing_m, search_m));
 }

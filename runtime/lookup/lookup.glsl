@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which lights to look at for a pixel. Expects in scope: `uint tile_words[]`, `ShadeConstants round` and the answer.
+// Which lights to look at for a pixel. Expects in scope: `uint tile_words[]`, `ShadeConstants group` and the answer.
 // The same for all threads of a work group, so that the group runs one loop: groups never reach over a tile's edge.
 #ifndef CHANDELIER_LOOKUP_GLSL
 #define CHANDELIER_LOOKUP_GLSL
@@ -9,13 +9,13 @@
 uint next_light(uint light) {
   if (lookup_answer == LOOKUP_ALL) return light;
   uvec2 tile = square_of_group() * gl_WorkGroupSize.xy / TILE_SIZE_PX;
-  uint first_word = (tile.y * round.tiles_x + tile.x) * round.words_per_tile;
-  while (light < round.light_end) {
+  uint first_word = (tile.y * group.tiles_x + tile.x) * group.words_per_tile;
+  while (light < group.light_end) {
     uint bits = tile_words[first_word + light / 32u].bits >> (light % 32u);
-    if (bits != 0u) return min(light + findLSB(bits), round.light_end);
+    if (bits != 0u) return min(light + findLSB(bits), group.light_end);
     light = (light / 32u + 1u) * 32u;
   }
-  return round.light_end;
+  return group.light_end;
 }
 
 #endif

@@ -11,7 +11,7 @@
 namespace chandelier {
 
 TilePipeline make_tile_pipeline(const gpu::Device& device) {
-  return {gpu::make_compute_pipeline(device, tiles_comp), make_texel_sampler(device)};
+  return {gpu::make_compute_pipeline(device, tiles_comp), gpu::make_texel_sampler(device)};
 }
 
 void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, gpu::Retired& retired,

@@ -2,10 +2,10 @@
 // The lookup stage: which lights reach which tile of the picture (tiles.comp).
 #pragma once
 
-#include "frame/targets.h"
 #include "frame_schema.h"
 #include "gpu/frames.h"
 #include "gpu/pipelines.h"
+#include "shading/targets.h"
 
 namespace chandelier {
 

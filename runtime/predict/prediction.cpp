@@ -16,7 +16,7 @@ constexpr uint64_t most_visibility_bytes = uint64_t{128} << 20;
 
 // A device may allow less: then the frame takes more passes over groups of maps, and holds less at a time, which
 // changes no other counter.
-RoundLimits limits_without_device(const pack::View& pack, const Recipe& recipe, uint64_t most_draws) {
+GroupLimits limits_without_device(const pack::View& pack, const Recipe& recipe, uint64_t most_draws) {
   const uint64_t cubes = recipe.shadow_budget_bytes / cube_bytes(recipe.face_size_px);
   return {.maps = static_cast<uint32_t>(std::clamp<uint64_t>(cubes, 1, most_layers / 6)),
           .views = most_views(pack.batch_instances.size(), most_draws),
@@ -54,8 +54,8 @@ Prediction Predictor::predict(const RenderSettings& settings) {
   Prediction prediction = plan(settings);
   const std::span<const frame::ShadowView> views(prediction.plan.views);
   std::vector<ViewGroup> groups;
-  for (const Round& round : prediction.plan.rounds)
-    if (round.view_count > 0) groups.push_back({round.first_view, round.view_count});
+  for (const MapGroup& group : prediction.plan.groups)
+    if (group.view_count > 0) groups.push_back({group.first_view, group.view_count});
   const CasterCounts counts = count_casters(settings.recipe.cull, views.first(prediction.stats.shadow_views), groups,
                                             settings.most_caster_draws, world_);
   prediction.stats.shadow_draws = counts.draws;

@@ -29,7 +29,7 @@ void begin_pass(gpu::Commands cmd, const Targets& targets) {
                              .pColorAttachments = colors,
                              .pDepthAttachment = &depth};
   cmd->vkCmdBeginRendering(cmd, &info);
-  set_viewport(cmd, targets.width, targets.height);
+  gpu::set_viewport(cmd, targets.width, targets.height);
 }
 
 }  // namespace

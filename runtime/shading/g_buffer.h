@@ -2,7 +2,7 @@
 // The g-buffer stage: what the camera sees, one multi-draw-indirect per material.
 #pragma once
 
-#include "frame/targets.h"
+#include "shading/targets.h"
 #include "shadows/cull/cull.h"
 
 namespace chandelier {

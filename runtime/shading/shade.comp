@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds the light of one round's ShadowMaps to the picture. Lights that share a map follow each other, so that visibility
+// Adds the light of one group's ShadowMaps to the picture. Lights that share a map follow each other, so that visibility
 // is had once per map and pixel: delivery `inline` filters it here, `textures` reads what visibility.comp left.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shading/round.glsl"
+#include "shading/group.glsl"
 #include "shading/brdf.glsl"
 
 // KHR_lights_punctual, spot lights.
@@ -43,29 +43,29 @@ float delivered_visibility(ShadowMap map, Receiver receiver, uvec2 pixel) {
 // Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked. It also
 // executes what stands behind an `if` that no thread takes, which is why the inner loop goes on over maps of which nothing
 // reaches these pixels: visibility is read once for each map that does.
-vec3 lit_by_round(Surface s, vec3 p, uvec2 pixel) {
+vec3 lit_by_group(Surface s, vec3 p, uvec2 pixel) {
   Reflector r = reflector(s, normalize(-p));
   if (shade_answer == SHADE_LAMBERT) r.diffuse = s.base_color / PI;
   Receiver receiver = receiver_at(p, s.geometric_normal);
   vec3 sum = vec3(0.0);
-  uint light = next_light(round.first_light);
-  if (light < round.light_end) do {
+  uint light = next_light(group.first_light);
+  if (light < group.light_end) do {
     uint number;
     vec3 of_map;
     bool reached;
     do {
       number = lights[light].map;  // NONE: of this light and all after it
-      uint map_end = number == NONE ? round.light_end : maps[number].first_light + maps[number].light_count;
+      uint map_end = number == NONE ? group.light_end : maps[number].first_light + maps[number].light_count;
       of_map = vec3(0.0);
       do {
         of_map += unshadowed(light, r, s.geometric_normal, p);
         light = next_light(light + 1u);
       } while (light < map_end);
       reached = number == NONE || subgroupAny(largest(of_map) > 0.0);
-    } while (!reached && light < round.light_end);
+    } while (!reached && light < group.light_end);
     if (number != NONE && reached) of_map *= delivered_visibility(maps[number], receiver, pixel);
     sum += of_map;
-  } while (light < round.light_end);
+  } while (light < group.light_end);
   return sum;
 }
 
@@ -75,8 +75,8 @@ void main() {
   float depth = texelFetch(depth_image, pixel, 0).r;
   vec4 radiance = imageLoad(radiance_image, pixel);
   bool unlit = radiance.a == 0.0;
-  if (depth == 0.0 || unlit || round.first_light == round.light_end) return;
+  if (depth == 0.0 || unlit || group.first_light == group.light_end) return;
   Surface s = unpack_surface(texelFetch(surface_image, pixel, 0));
   vec3 p = eye_position(view, vec2(pixel) + 0.5, depth);
-  imageStore(radiance_image, pixel, vec4(radiance.rgb + lit_by_round(s, p, uvec2(pixel)), radiance.a));
+  imageStore(radiance_image, pixel, vec4(radiance.rgb + lit_by_group(s, p, uvec2(pixel)), radiance.a));
 }

@@ -79,7 +79,7 @@ uint32_t projections_of(std::span<const frame::ShadowMap> maps) {
 
 ShadePipelines make_shade_pipelines(const gpu::Device& device) {
   ShadePipelines pipelines;
-  pipelines.texel_sampler = make_texel_sampler(device);
+  pipelines.texel_sampler = gpu::make_texel_sampler(device);
   pipelines.linear_compare = shadow_sampler(device, VK_FILTER_LINEAR, VK_TRUE);
   pipelines.nearest_depth = shadow_sampler(device, VK_FILTER_NEAREST, VK_FALSE);
   return pipelines;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter, deliver and shade stages of one round: fills visibility textures where the recipe wants them, and adds
+// The filter, deliver and shade stages of one group: fills visibility textures where the recipe wants them, and adds
 // light.
 #pragma once
 
@@ -7,10 +7,10 @@
 #include <map>
 #include <span>
 
-#include "frame/recipe.h"
-#include "frame/targets.h"
 #include "gpu/pipelines.h"
 #include "lookup/tiles.h"
+#include "recipe_schema.h"
+#include "shading/targets.h"
 #include "shadows/store/cube_array.h"
 
 namespace chandelier {
@@ -32,13 +32,13 @@ struct ShadeInput {
   const gpu::Buffer& lights;      // frame FrameLight
   const gpu::Buffer& maps;        // frame ShadowMap
   const gpu::Buffer& views;       // frame ShadowView
-  const gpu::Buffer& visibility;  // bytes of the round's visibility textures; unused where delivery is inline
+  const gpu::Buffer& visibility;  // bytes of the group's visibility textures; unused where delivery is inline
   const TileLists& tiles;         // unused where lookup is all
   uint32_t first_light;
   uint32_t light_count;
   uint32_t projections;  // of the frame's maps
 };
-/// Filters the round's maps into `input.visibility`, which shading may read afterwards.
+/// Filters the group's maps into `input.visibility`, which shading may read afterwards.
 void record_visibility(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
                        const ShadeInput& input, const CubeArray& store, const Targets& targets);
 void record_shade(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "frame/targets.h"
 #include "gpu/pipelines.h"
+#include "shading/targets.h"
 
 namespace chandelier {
 

@@ -2,7 +2,7 @@
 // Visibility by rays on the CPU (Embree), the reference for shadow maps.
 #pragma once
 
-#include "frame/visibility_query.h"
+#include "shadows/filter/visibility_query.h"
 #include "world/world.h"
 
 namespace chandelier::truth {

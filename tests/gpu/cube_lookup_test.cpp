@@ -7,13 +7,13 @@
 #include <random>
 
 #include "../rays/embree_scene.h"
-#include "frame/rounds.h"
-#include "frame/targets.h"
 #include "gpu_test.h"
 #include "shaders/lookup_comp.h"
+#include "shading/targets.h"
 #include "shadows/cull/cull.h"
 #include "shadows/project/shadow_views.h"
 #include "shadows/raster/caster_pass.h"
+#include "shadows/store/map_groups.h"
 
 namespace chandelier::test {
 namespace {
@@ -134,7 +134,7 @@ class CubeLookupTest : public GpuTest {
     return gpu::upload_buffer(device(), std::as_bytes(std::span(records)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   }
 
-  // Runs select, project, cull and rasterize as a frame does, all maps in one round.
+  // Runs select, project, cull and rasterize as a frame does, all maps in one group.
   Maps draw_maps(const pack::File& pack, uint32_t face_size_px) {
     const World world(pack);
     const GpuScene scene = upload_scene(device(), world);
@@ -143,8 +143,8 @@ class CubeLookupTest : public GpuTest {
     maps.list = select_lights(world, {}, camera, 1.0f);
     maps.views = project_lights(maps.list, camera, 1.0f, world.bounds(), face_size_px);
     const auto count = static_cast<uint32_t>(maps.list.maps.size());
-    const auto rounds = plan_rounds(maps.list, maps.views, {.maps = count});
-    EXPECT_EQ(rounds.size(), 1u);
+    const auto groups = plan_groups(maps.list, maps.views, {.maps = count});
+    EXPECT_EQ(groups.size(), 1u);
     const auto view_count = static_cast<uint32_t>(maps.views.size());
     maps.store = make_cube_array(device(), face_size_px, count);
 

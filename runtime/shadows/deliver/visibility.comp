@@ -3,7 +3,7 @@
 // that a map's lights can reach is kept, and only pixels within C_att are filtered.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shading/round.glsl"
+#include "shading/group.glsl"
 
 // The next light that belongs to another map than `light`.
 uint next_map(uint light) {
@@ -15,12 +15,12 @@ void main() {
   ivec2 pixel = ivec2(pixel_of_thread());
   if (any(greaterThanEqual(vec2(pixel), view.size_px))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
-  if (depth == 0.0 || round.first_light == round.light_end) return;
+  if (depth == 0.0 || group.first_light == group.light_end) return;
   vec3 n = unpack_surface(texelFetch(surface_image, pixel, 0)).geometric_normal;
   vec3 p = eye_position(view, vec2(pixel) + 0.5, depth);
   Receiver receiver = receiver_at(p, n);
-  uint light = next_light(round.first_light);
-  if (light < round.light_end) do {
+  uint light = next_light(group.first_light);
+  if (light < group.light_end) do {
     ShadowMap map = maps[lights[light].map];
     uint place = visibility_place(map, uvec2(pixel));
     bool reached = place != NONE && in_range(map, p);
@@ -29,5 +29,5 @@ void main() {
       if (reached) visibility_bytes[place] = uint8_t(visible);
     }
     light = next_map(light);
-  } while (light < round.light_end);
+  } while (light < group.light_end);
 }

@@ -8,8 +8,6 @@
 const float SMOOTHING_TEXELS = 1.5;  // least radius: hides the staircase of a single light's map
 const float RAISE_TEXELS = 1.5;      // bilinear comparison reads texels whose centres are up to a diagonal away
 
-const uint DISC_TAPS = POISSON_TAPS;
-
 // A pixel's taps lie in rings of equal area, one in each, 152 degrees further on from ring to ring. In the block's next pixel
 // all are 45 degrees further on, at another of eight radii within their rings. So a pixel's taps are about even over the disc,
 // and those of a block as even as a golden spiral: over straight edges a pixel's own 8 err by 0.058 and the block's 64 by 0.012,

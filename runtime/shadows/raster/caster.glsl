@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Casters of all views of a round in one pass: each draw chooses its layer. With MASKED also what an alpha test needs.
+// Casters of all views of a group in one pass: each draw chooses its layer. With MASKED also what an alpha test needs.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_shader_viewport_layer_array : require
 #include "frame_schema.glsl"

@@ -3,7 +3,7 @@
 
 #include <volk.h>
 
-#include "frame/targets.h"
+#include "gpu/image_uses.h"
 #include "shaders/caster_masked_frag.h"
 #include "shaders/caster_masked_vert.h"
 #include "shaders/caster_vert.h"
@@ -23,7 +23,7 @@ void begin_pass(gpu::Commands cmd, const CubeArray& store, uint32_t cubes, bool 
                              .layerCount = 6 * cubes,
                              .pDepthAttachment = &depth};
   cmd->vkCmdBeginRendering(cmd, &info);
-  set_viewport(cmd, store.face_size_px, store.face_size_px);
+  gpu::set_viewport(cmd, store.face_size_px, store.face_size_px);
   // Both sides of a surface cast: an open mesh shadows whichever way it faces.
   cmd->vkCmdSetCullMode(cmd, VK_CULL_MODE_NONE);
 }

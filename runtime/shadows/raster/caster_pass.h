@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rasterize answer `multi-draw`: the casters of all views of a round in one pass, one multi-draw-indirect for
+// Rasterize answer `multi-draw`: the casters of all views of a group in one pass, one multi-draw-indirect for
 // everything opaque and one per alpha-tested material.
 #pragma once
 

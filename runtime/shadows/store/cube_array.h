@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Store answer `cube-array`: a pool of cubes of one size. A map takes six layers of it; where there are more maps than
-// cubes, the frame draws and shades them in rounds.
+// cubes, the frame draws and shades them in groups.
 #pragma once
 
 #include "gpu/resources.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds: every map is drawn once, in order, within the limits, and shadow views cover every direction.
-#include "frame/rounds.h"
+// Groups of maps: every map is drawn once, in order, within the limits, and shadow views cover every direction.
+#include "shadows/store/map_groups.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 struct Planned {
   LightList list;
   std::vector<frame::ShadowView> views;
-  std::vector<Round> rounds;
+  std::vector<MapGroup> groups;
 };
 
 // Maps with these many views each.
@@ -28,20 +28,20 @@ Planned plan(const std::vector<uint32_t>& views_of_maps, uint32_t cubes, uint64_
     planned.list.maps.push_back({.first_view = static_cast<uint32_t>(planned.views.size()), .view_count = count});
     for (uint32_t face = 0; face < count; ++face) planned.views.push_back({.layer = face});
   }
-  planned.rounds = plan_rounds(planned.list, planned.views, {.maps = cubes, .views = max_views});
+  planned.groups = plan_groups(planned.list, planned.views, {.maps = cubes, .views = max_views});
   return planned;
 }
 
 void expect_sound(const Planned& planned, uint32_t cubes, uint64_t max_views) {
   uint32_t map = 0, view = 0;
-  for (const Round& round : planned.rounds) {
-    EXPECT_EQ(round.first_map, map);
-    EXPECT_EQ(round.first_view, view);
-    EXPECT_GE(round.map_count, 1u);
-    EXPECT_LE(round.map_count, cubes);
-    EXPECT_TRUE(round.map_count == 1 || round.view_count <= max_views);
+  for (const MapGroup& group : planned.groups) {
+    EXPECT_EQ(group.first_map, map);
+    EXPECT_EQ(group.first_view, view);
+    EXPECT_GE(group.map_count, 1u);
+    EXPECT_LE(group.map_count, cubes);
+    EXPECT_TRUE(group.map_count == 1 || group.view_count <= max_views);
     std::set<uint32_t> layers;
-    for (uint32_t m = 0; m < round.map_count; ++m) {
+    for (uint32_t m = 0; m < group.map_count; ++m) {
       const frame::ShadowMap& drawn = planned.list.maps[map + m];
       EXPECT_EQ(drawn.cube, m);
       for (uint32_t v = drawn.first_view; v < drawn.first_view + drawn.view_count; ++v) {
@@ -49,33 +49,33 @@ void expect_sound(const Planned& planned, uint32_t cubes, uint64_t max_views) {
         EXPECT_TRUE(layers.insert(planned.views[v].layer).second);
       }
     }
-    EXPECT_EQ(layers.size(), round.view_count);
-    map += round.map_count;
-    view += round.view_count;
+    EXPECT_EQ(layers.size(), group.view_count);
+    map += group.map_count;
+    view += group.view_count;
   }
   EXPECT_EQ(map, planned.list.maps.size());
   EXPECT_EQ(view, planned.views.size());
 }
 
-TEST(RoundsTest, LightsWithoutShadowAreShadedInTheLast) {
+TEST(MapGroupsTest, LightsWithoutShadowAreShadedInTheLast) {
   LightList list;
   std::vector<frame::ShadowView> views;
   list.shadowless.resize(3);
-  auto rounds = plan_rounds(list, views, {.maps = 1});
-  ASSERT_EQ(rounds.size(), 1u);
-  EXPECT_EQ(rounds[0].map_count, 0u);
-  EXPECT_EQ(rounds[0].light_count, 0u);
-  EXPECT_EQ(rounds[0].shadowless_count, 3u);
+  auto groups = plan_groups(list, views, {.maps = 1});
+  ASSERT_EQ(groups.size(), 1u);
+  EXPECT_EQ(groups[0].map_count, 0u);
+  EXPECT_EQ(groups[0].light_count, 0u);
+  EXPECT_EQ(groups[0].shadowless_count, 3u);
   for (uint32_t i = 0; i < 2; ++i) list.maps.push_back({.first_light = i, .light_count = 1});
-  rounds = plan_rounds(list, views, {.maps = 1});
-  ASSERT_EQ(rounds.size(), 2u);
-  EXPECT_EQ(rounds[0].shadowless_count, 0u);
-  EXPECT_EQ(rounds[1].first_light + rounds[1].light_count, 2u);
-  EXPECT_EQ(rounds[1].shadowless_count, 3u);
+  groups = plan_groups(list, views, {.maps = 1});
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0].shadowless_count, 0u);
+  EXPECT_EQ(groups[1].first_light + groups[1].light_count, 2u);
+  EXPECT_EQ(groups[1].shadowless_count, 3u);
 }
 
 // Visibility textures lie one after the other and never exceed the limit, unless one alone does.
-TEST(RoundsTest, VisibilityTexturesStayWithinTheirLimit) {
+TEST(MapGroupsTest, VisibilityTexturesStayWithinTheirLimit) {
   LightList list;
   std::vector<frame::ShadowView> views;
   for (const uint32_t rows : {3u, 5u, 0u, 9u, 20u, 1u, 1u})
@@ -83,41 +83,41 @@ TEST(RoundsTest, VisibilityTexturesStayWithinTheirLimit) {
                          .light_count = 1,
                          .rect_width = 10,
                          .rect_height = rows});
-  const auto rounds = plan_rounds(list, views, {.maps = 100, .visibility_bytes = 100});
-  ASSERT_EQ(rounds.size(), 4u);
-  EXPECT_EQ(rounds[0].map_count, 3u);
-  EXPECT_EQ(rounds[0].visibility_bytes, 80u);
+  const auto groups = plan_groups(list, views, {.maps = 100, .visibility_bytes = 100});
+  ASSERT_EQ(groups.size(), 4u);
+  EXPECT_EQ(groups[0].map_count, 3u);
+  EXPECT_EQ(groups[0].visibility_bytes, 80u);
   EXPECT_EQ(list.maps[1].first_visibility, 30u);
   EXPECT_EQ(list.maps[2].first_visibility, 80u);
-  EXPECT_EQ(rounds[2].visibility_bytes, 200u);  // alone
-  EXPECT_EQ(rounds[3].first_light, 5u);
-  EXPECT_EQ(rounds[3].light_count, 2u);
+  EXPECT_EQ(groups[2].visibility_bytes, 200u);  // alone
+  EXPECT_EQ(groups[3].first_light, 5u);
+  EXPECT_EQ(groups[3].light_count, 2u);
   EXPECT_EQ(list.maps[6].first_visibility, 10u);
 }
 
-TEST(RoundsTest, NothingNeedsNoRound) {
-  EXPECT_TRUE(plan({}, 4, 100).rounds.empty());
+TEST(MapGroupsTest, NothingNeedsNoGroup) {
+  EXPECT_TRUE(plan({}, 4, 100).groups.empty());
 }
 
-TEST(RoundsTest, OneRoundWhereAllFits) {
+TEST(MapGroupsTest, OneGroupWhereAllFits) {
   const Planned planned = plan({6, 6, 3, 6}, 4, 21);
-  EXPECT_EQ(planned.rounds.size(), 1u);
+  EXPECT_EQ(planned.groups.size(), 1u);
   expect_sound(planned, 4, 21);
 }
 
-TEST(RoundsTest, OneCubeAtATime) {
+TEST(MapGroupsTest, OneCubeAtATime) {
   const Planned planned = plan({6, 2, 6}, 1, 100);
-  EXPECT_EQ(planned.rounds.size(), 3u);
+  EXPECT_EQ(planned.groups.size(), 3u);
   expect_sound(planned, 1, 100);
 }
 
-TEST(RoundsTest, ViewsLimitARoundButNotASingleMap) {
+TEST(MapGroupsTest, ViewsLimitAGroupButNotASingleMap) {
   const Planned planned = plan({6, 2, 2, 6, 6}, 10, 4);
-  EXPECT_EQ(planned.rounds.size(), 4u);  // 6 | 2 2 | 6 | 6
+  EXPECT_EQ(planned.groups.size(), 4u);  // 6 | 2 2 | 6 | 6
   expect_sound(planned, 10, 4);
 }
 
-TEST(RoundsTest, AnyPlanIsSound) {
+TEST(MapGroupsTest, AnyPlanIsSound) {
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
     std::vector<uint32_t> views(random() % 50);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frame/ray_visibility.h"
+#include "shadows/filter/ray_visibility.h"
 
 #include <volk.h>
 
@@ -53,10 +53,10 @@ std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const fram
   return points;
 }
 
-void fill_visibility(const FramePlan& plan, const Round& round, std::span<const SurfacePoint> points, uint32_t width,
+void fill_visibility(const FramePlan& plan, const MapGroup& group, std::span<const SurfacePoint> points, uint32_t width,
                      const VisibilitySource& source, std::span<uint8_t> bytes) {
   std::vector<SurfacePoint> in_rect;
-  for (uint32_t m = round.first_map; m < round.first_map + round.map_count; ++m) {
+  for (uint32_t m = group.first_map; m < group.first_map + group.map_count; ++m) {
     const frame::ShadowMap& map = plan.list.maps[m];
     in_rect.clear();
     for (uint32_t y = map.rect_y; y < map.rect_y + map.rect_height; ++y) {

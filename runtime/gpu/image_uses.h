@@ -1,26 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen-sized images of a frame, and how its stages use them.
+// What frames do with images, for barriers.
 #pragma once
 
 #include "gpu/resources.h"
 
 namespace chandelier {
 
-struct Targets {
-  gpu::Image surface;   // shading/surface.glsl
-  gpu::Image depth;     // reversed: 0 is the background
-  gpu::Image radiance;  // linear
-  gpu::Image shown;     // sRGB values
-  uint32_t width = 0;
-  uint32_t height = 0;
-};
-
-Targets make_targets(const gpu::Device& device, uint32_t width, uint32_t height);
-
-/// Reads a target texel by texel.
-gpu::Owned<VkSampler> make_texel_sampler(const gpu::Device& device);
-
-/// How images are used in a frame, for barriers.
 namespace use {
 inline constexpr gpu::ImageUse nothing{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                        VK_ACCESS_2_NONE};
@@ -40,8 +25,5 @@ inline constexpr gpu::ImageUse copied_to{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, V
 inline constexpr gpu::ImageUse copied{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                       VK_ACCESS_2_TRANSFER_READ_BIT};
 }  // namespace use
-
-/// Covers an image `width` by `height` with viewport and scissor.
-void set_viewport(gpu::Commands cmd, uint32_t width, uint32_t height);
 
 }  // namespace chandelier

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a round's dispatches over the picture read: visibility.comp fills visibility textures, shade.comp adds light.
+// What a group's dispatches over the picture read: visibility.comp fills visibility textures, shade.comp adds light.
 #extension GL_EXT_shader_8bit_storage : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
@@ -29,7 +29,7 @@ layout(binding = 9, scalar) readonly buffer TileWords { TileWord tile_words[]; }
 layout(binding = 10, scalar) buffer Visibility { uint8_t visibility_bytes[]; };
 layout(binding = 11) uniform samplerCubeArray cube_depths;
 layout(binding = 12) uniform sampler2DArray layer_depths;
-layout(push_constant, scalar) uniform Push { ShadeConstants round; };
+layout(push_constant, scalar) uniform Push { ShadeConstants group; };
 
 #include "lookup/lookup.glsl"
 #include "shadows/filter/visibility.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where there are more shadow maps than the pool holds, a frame draws and shades them in rounds: memory stays within
+// Where there are more shadow maps than the pool holds, a frame draws and shades them in groups: memory stays within
 // its budget and no light loses its shadow.
 #pragma once
 
@@ -9,26 +9,26 @@
 
 namespace chandelier {
 
-struct Round {
+struct MapGroup {
   uint32_t first_map;
   uint32_t map_count;
   uint32_t first_view;
   uint32_t view_count;
   uint32_t first_light;
   uint32_t light_count;       // of its maps
-  uint32_t shadowless_count;  // lights that follow them, of no map; in the last round
+  uint32_t shadowless_count;  // lights that follow them, of no map; in the last group
   uint64_t visibility_bytes;  // of all its maps' visibility textures
 };
 
-/// What a round may hold at most. A single map may exceed all but the first.
-struct RoundLimits {
+/// What a group may hold at most. A single map may exceed all but the first.
+struct GroupLimits {
   uint32_t maps = 1;
   uint64_t views = UINT64_MAX;
   uint64_t visibility_bytes = UINT64_MAX;
 };
 
-/// Splits the maps into rounds, the last of which has the lights without shadow too, and gives every map its cube and
+/// Splits the maps into groups, the last of which has the lights without shadow too, and gives every map its cube and
 /// the place of its visibility texture, and every view its layer.
-std::vector<Round> plan_rounds(LightList& list, std::vector<frame::ShadowView>& views, const RoundLimits& limits);
+std::vector<MapGroup> plan_groups(LightList& list, std::vector<frame::ShadowView>& views, const GroupLimits& limits);
 
 }  // namespace chandelier

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frame/frame_plan.h"
-#include "frame/targets.h"
+#include "shading/targets.h"
 
 namespace chandelier {
 
@@ -14,9 +14,9 @@ void record_read_surfaces(gpu::Commands cmd, const Targets& targets, const gpu::
 /// One point a pixel, rows from the top, where shading has them too.
 std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const frame::ViewConstants& view);
 
-/// Asks for the visibility of every light of a round; each must have a map of its own. `bytes` holds the round's
+/// Asks for the visibility of every light of a group; each must have a map of its own. `bytes` holds the group's
 /// textures.
-void fill_visibility(const FramePlan& plan, const Round& round, std::span<const SurfacePoint> points, uint32_t width,
+void fill_visibility(const FramePlan& plan, const MapGroup& group, std::span<const SurfacePoint> points, uint32_t width,
                      const VisibilitySource& source, std::span<uint8_t> bytes);
 
 }  // namespace chandelier

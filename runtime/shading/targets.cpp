@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "frame/targets.h"
-
-#include <volk.h>
+#include "shading/targets.h"
 
 namespace chandelier {
 
@@ -19,20 +17,6 @@ Targets make_targets(const gpu::Device& device, uint32_t width, uint32_t height)
           image(VK_FORMAT_R8G8B8A8_UNORM, copied_later),
           width,
           height};
-}
-
-gpu::Owned<VkSampler> make_texel_sampler(const gpu::Device& device) {
-  return gpu::make_sampler(device, {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                    .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                    .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
-}
-
-void set_viewport(gpu::Commands cmd, uint32_t width, uint32_t height) {
-  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height), 0.0f, 1.0f};
-  const VkRect2D scissor{{0, 0}, {width, height}};
-  cmd->vkCmdSetViewport(cmd, 0, 1, &viewport);
-  cmd->vkCmdSetScissor(cmd, 0, 1, &scissor);
 }
 
 }  // namespace chandelier
