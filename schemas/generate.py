@@ -301,7 +301,9 @@ def outputs(schema):
     if schema.recipe.stages:
         files.append(("recipe_schema.h", "recipe.h.j2", None))
         for stage in schema.recipe.stages:
-            if stage.folder:
+            if stage.code == "glsl":
+                files.append((f"stages/{stage.member}.glsl", "stage.glsl.j2", stage))
+            if stage.code == "compute":
                 files += [(f"stages/{stage.member}.h", "stage.h.j2", stage),
                           (f"stages/{stage.member}_shaders.h", "stage_shaders.h.j2", stage)]
     return files + [(f"echo/{r.name}.comp", "echo.comp.j2", r) for r in schema.gpu_records]

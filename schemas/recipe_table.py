@@ -33,6 +33,7 @@ class Answer:
         self.identifier = check_name(element.get("identifier", self.name.replace("-", "_")), SNAKE, place)
         self.constant = self.name.replace("-", "_").upper()
         self.camel = camel(self.name)
+        self.is_on_gpu = element.get("on") != "cpu"
         if not self.meaning:
             raise SchemaError(f"{place}: has no text that explains it")
 
@@ -60,6 +61,17 @@ class Choice:
         return f"{self.enum}::{found[0].identifier}"
 
 
+class Function:
+    """A GLSL function that every answer of a stage has, as "float visibility(ShadowMap map, Receiver receiver)"."""
+
+    def __init__(self, text, place):
+        match = re.fullmatch(r"\s*(\w+) (\w+)\(([^()]*)\)\s*", text)
+        if not match:
+            raise SchemaError(f"{place}: not a function: {text}")
+        self.result, self.name, self.parameters = match.groups()
+        self.arguments = ", ".join(parameter.split()[-1] for parameter in self.parameters.split(","))
+
+
 class Stage(Choice):
     def __init__(self, element):
         name = element.get("name")
@@ -69,7 +81,12 @@ class Stage(Choice):
         super().__init__(element, name, camel(name))
         self.member = name.replace("-", "_")
         self.constant = self.member.upper()
-        self.question, self.folder = element.get("question"), element.get("folder")
+        self.question, self.folder, self.code = element.get("question"), element.get("folder"), element.get("code")
+        self.functions = [Function(text, self.name) for text in (element.get("functions") or "").split(";") if text]
+        if (self.code is not None) != (self.folder is not None) or self.code not in (None, "compute", "glsl"):
+            raise SchemaError(f"{self.name}: code is 'compute' or 'glsl' and stands with a folder ({self.code})")
+        if (self.code == "glsl") != bool(self.functions):
+            raise SchemaError(f"{self.name}: functions belong to code 'glsl', and only to that")
         if not self.question:
             raise SchemaError(f"{name}: has no question")
 

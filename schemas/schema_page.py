@@ -10,8 +10,8 @@ ATTRIBUTES = {
     "record": {"name", "gpu"},
     "field": {"name", "type", "count", "unit", "min", "max", "enum", "index", "optional", "run", "length"},
     "section": {"kind", "name", "record", "type", "same_count", "min_count", "max_count"},
-    "stage": {"name", "question", "default", "folder"},
-    "answer": {"name", "identifier"},
+    "stage": {"name", "question", "default", "folder", "code", "functions"},
+    "answer": {"name", "identifier", "on"},
     "setting": {"name", "option", "placeholder", "type", "enum", "unit", "scale", "default", "least", "most", "optional"},
 }
 # Words that C++, GLSL or Python keep for themselves and that a schema might want.

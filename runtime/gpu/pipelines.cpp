@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
 
 namespace chandelier::gpu {
 namespace {
@@ -68,14 +69,55 @@ void make_layout(const Device& device, std::span<const VkDescriptorSetLayout> mo
   pipeline.layout = {device.handle, layout, device->vkDestroyPipelineLayout};
 }
 
+const Named* named(std::span<const Named> all, std::string_view name) {
+  const auto found = std::ranges::find(all, name, &Named::name);
+  return found == all.end() ? nullptr : &*found;
+}
+
+// The constants that a shader has.
 struct Specialization {
   std::vector<VkSpecializationMapEntry> entries;
+  std::vector<uint32_t> values;
   VkSpecializationInfo info{};
-  explicit Specialization(const Constants& constants) {
-    for (uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4u, 4});
-    info = {static_cast<uint32_t>(entries.size()), entries.data(), constants.size() * 4, constants.data()};
+  Specialization(const Shader& shader, const Constants& constants) {
+    for (const Constant& constant : constants) {
+      const Named* found = named(shader.constants, constant.name);
+      if (!found) continue;
+      entries.push_back({found->number, static_cast<uint32_t>(values.size() * 4), 4});
+      values.push_back(constant.value);
+    }
+    info = {static_cast<uint32_t>(entries.size()), entries.data(), values.size() * 4, values.data()};
   }
+  Specialization(const Specialization&) = delete;  // info points into it
+  Specialization& operator=(const Specialization&) = delete;
 };
+
+void check_constants(const Constants& constants, const Shader& shader, const Shader* other = nullptr) {
+  for (const Constant& constant : constants)
+    if (!named(shader.constants, constant.name) && !(other && named(other->constants, constant.name)))
+      throw Error(std::string(shader.name) + ": there is no constant " + std::string(constant.name));
+}
+
+struct VertexInput {
+  std::vector<VkVertexInputBindingDescription> streams;
+  std::vector<VkVertexInputAttributeDescription> attributes;
+};
+
+VertexInput vertex_input(const Shader& vertex, std::span<const VertexStream> streams) {
+  VertexInput input;
+  for (const VertexStream& stream : streams) {
+    const auto binding = static_cast<uint32_t>(input.streams.size());
+    input.streams.push_back({binding, stream.stride_bytes, VK_VERTEX_INPUT_RATE_VERTEX});
+    for (const VertexAttribute& attribute : stream.attributes)
+      if (const Named* found = named(vertex.inputs, attribute.name))
+        input.attributes.push_back({found->number, binding, attribute.format, attribute.offset_bytes});
+  }
+  for (const Named& needed : vertex.inputs)
+    if (std::ranges::find(input.attributes, needed.number, &VkVertexInputAttributeDescription::location) ==
+        input.attributes.end())
+      throw Error(std::string(vertex.name) + ": " + std::string(needed.name) + ": is in no vertex stream");
+  return input;
+}
 
 VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShaderModule module,
                                       const Specialization& constants) {
@@ -105,7 +147,8 @@ Pipeline make_compute_pipeline(const Device& device, const Shader& shader, const
   add_shader(shader, 1, pipeline);
   make_layout(device, {}, pipeline);
   const auto module = make_module(device, shader.words);
-  const Specialization specialization(constants);
+  check_constants(constants, shader);
+  const Specialization specialization(shader, constants);
   const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                                          .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization),
                                          .layout = pipeline.layout};
@@ -121,31 +164,24 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
   add_shader(in.vertex, in.more_sets.size() + 1, pipeline);
   if (in.fragment) add_shader(*in.fragment, in.more_sets.size() + 1, pipeline);
   make_layout(device, in.more_sets, pipeline);
-  const Specialization specialization(in.constants);
+  check_constants(in.constants, in.vertex, in.fragment);
+  const Specialization of_vertex(in.vertex, in.constants);
+  const Specialization of_fragment(in.fragment ? *in.fragment : in.vertex, in.constants);
   const auto vertex = make_module(device, in.vertex.words);
   Owned<VkShaderModule> fragment;
-  std::vector<VkPipelineShaderStageCreateInfo> stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, specialization)};
+  std::vector<VkPipelineShaderStageCreateInfo> stages{stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, of_vertex)};
   if (in.fragment) {
     fragment = make_module(device, in.fragment->words);
-    stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, specialization));
+    stages.push_back(stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, of_fragment));
   }
 
-  std::vector<VkVertexInputBindingDescription> streams;
-  std::vector<VkVertexInputAttributeDescription> attributes;
-  for (const VertexStream& stream : in.streams) {
-    const auto binding = static_cast<uint32_t>(streams.size());
-    streams.push_back({binding, stream.stride_bytes, VK_VERTEX_INPUT_RATE_VERTEX});
-    for (auto attribute : stream.attributes) {
-      attribute.binding = binding;
-      attributes.push_back(attribute);
-    }
-  }
-  const VkPipelineVertexInputStateCreateInfo vertex_input{
+  const VertexInput input = vertex_input(in.vertex, in.streams);
+  const VkPipelineVertexInputStateCreateInfo input_info{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
-      .vertexBindingDescriptionCount = static_cast<uint32_t>(streams.size()),
-      .pVertexBindingDescriptions = streams.data(),
-      .vertexAttributeDescriptionCount = static_cast<uint32_t>(attributes.size()),
-      .pVertexAttributeDescriptions = attributes.data()};
+      .vertexBindingDescriptionCount = static_cast<uint32_t>(input.streams.size()),
+      .pVertexBindingDescriptions = input.streams.data(),
+      .vertexAttributeDescriptionCount = static_cast<uint32_t>(input.attributes.size()),
+      .pVertexAttributeDescriptions = input.attributes.data()};
   const VkPipelineInputAssemblyStateCreateInfo assembly{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
       .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
@@ -179,7 +215,7 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
                                           .pNext = &rendering,
                                           .stageCount = static_cast<uint32_t>(stages.size()),
                                           .pStages = stages.data(),
-                                          .pVertexInputState = &vertex_input,
+                                          .pVertexInputState = &input_info,
                                           .pInputAssemblyState = &assembly,
                                           .pViewportState = &viewport,
                                           .pRasterizationState = &raster,

@@ -39,14 +39,26 @@ struct Pipeline {
   std::array<uint32_t, 3> local_size{};  // threads of a work group
 };
 
-/// Specialization constants 0, 1, 2 … of every stage.
-using Constants = std::vector<uint32_t>;
+/// A specialization constant's value, by its name in GLSL. Those that are not given keep what the shader says.
+struct Constant {
+  std::string_view name;
+  uint32_t value;
+};
+using Constants = std::vector<Constant>;
 
+/// Throws Error where the shader has no constant of a name.
 Pipeline make_compute_pipeline(const Device& device, const Shader& shader, const Constants& constants = {});
 
+/// A part of a vertex, read by the vertex shader's input of that name.
+struct VertexAttribute {
+  std::string_view name;
+  VkFormat format;
+  uint32_t offset_bytes;
+};
+/// What the shader has no input for is not read.
 struct VertexStream {
   uint32_t stride_bytes;
-  std::vector<VkVertexInputAttributeDescription> attributes;  // binding is filled in
+  std::vector<VertexAttribute> attributes;
 };
 
 struct GraphicsInfo {
@@ -58,7 +70,8 @@ struct GraphicsInfo {
   VkFormat depth = VK_FORMAT_UNDEFINED;
   Constants constants;
 };
-/// Triangle lists, reversed depth (greater passes), dynamic viewport, scissor and cull mode.
+/// Triangle lists, reversed depth (greater passes), dynamic viewport, scissor and cull mode. Throws Error where an
+/// input of the vertex shader is in no stream, or no shader has a constant of a name.
 Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& info);
 
 /// Binds the pipeline and its set 0. Throws Error unless each binding gets one resource, of its type.

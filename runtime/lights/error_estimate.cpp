@@ -23,7 +23,7 @@ constexpr std::array<glm::vec2, frame::disc_taps> poisson_disc{{{0.000f, 0.000f}
                                                                 {-0.434f, -0.369f},
                                                                 {0.301f, -0.520f},
                                                                 {-0.165f, 0.666f}}};
-// Numbers of shadows/filter/receiver_disc.glsl and pcf.glsl.
+// Numbers of shadows/filter/receiver_disc.glsl and filter_pcf.glsl.
 constexpr float smoothing_texels = 1.5f;
 constexpr float penumbra_per_radius = 0.27f;
 constexpr float raise_texels = 0.75f;  // more than the reference is raised: the rays need none for their own sake
@@ -65,14 +65,14 @@ glm::vec3 tap_place(const Receiver& receiver, const glm::vec2& at_m) {
   return receiver.center_ws + d * std::min(1.0f, receiver.distance_m / glm::length(d));
 }
 
-// pcf.glsl:cube_pcf
+// filter_pcf.glsl:cube_pcf
 float pcf(const LightSamples& samples, uint32_t center, const Receiver& receiver, float radius_m) {
   uint32_t lit = 0;
   for (const glm::vec2& tap : poisson_disc) lit += samples.is_lit(center, tap_place(receiver, radius_m * tap)) ? 1 : 0;
   return static_cast<float>(lit) / frame::disc_taps;
 }
 
-// pcss.glsl:cube_pcss
+// filter_pcss.glsl:cube_pcss
 float pcss(const LightSamples& samples, uint32_t center, const Receiver& receiver, float light_m) {
   const float smoothing_m = smoothing_texels * receiver.texel_m;
   const float search_m = std::max(smoothing_m, std::min(light_m, 0.5f * receiver.distance_m));
@@ -91,15 +91,25 @@ float pcss(const LightSamples& samples, uint32_t center, const Receiver& receive
 
 // How much of a map's light the point sees, as the filter will say. Cascades are so fine that their filter is left out.
 float visibility(const LightSamples& samples, const MapMember& map, uint32_t point, const ShadowReading& reading) {
-  const bool directional = samples.light(map.center).type == pack::LightType::directional;
-  const bool exact = reading.filter == Filter::hard || reading.filter == Filter::rays;
-  if (exact || directional) return samples.sees(map.center, point) ? 1.0f : 0.0f;
-  const Receiver receiver = receiver_at(samples, map.center, point, reading.face_size_px);
-  const float smoothing_m = smoothing_texels * receiver.texel_m;
-  if (reading.filter == Filter::pcss && map.filter_radius_m > 0.0f)
-    return pcss(samples, map.center, receiver, map.filter_radius_m);
-  const float wide_m = std::min(penumbra_per_radius * map.filter_radius_m, 0.5f * receiver.distance_m);
-  return pcf(samples, map.center, receiver, std::max(smoothing_m, wide_m));
+  const auto exact = [&] { return samples.sees(map.center, point) ? 1.0f : 0.0f; };
+  const auto soft = [&](bool searches) {
+    const Receiver receiver = receiver_at(samples, map.center, point, reading.face_size_px);
+    if (searches && map.filter_radius_m > 0.0f) return pcss(samples, map.center, receiver, map.filter_radius_m);
+    const float smoothing_m = smoothing_texels * receiver.texel_m;
+    const float wide_m = std::min(penumbra_per_radius * map.filter_radius_m, 0.5f * receiver.distance_m);
+    return pcf(samples, map.center, receiver, std::max(smoothing_m, wide_m));
+  };
+  if (samples.light(map.center).type == pack::LightType::directional) return exact();
+  switch (reading.filter) {
+    case Filter::hard:
+    case Filter::rays:
+      return exact();
+    case Filter::pcf:
+      return soft(false);
+    case Filter::pcss:
+      return soft(true);
+  }
+  refuse_answer(reading.filter);
 }
 
 }  // namespace

@@ -156,27 +156,38 @@ std::vector<Member> one_map_each(std::span<const pack::Light> lights, std::span<
   return members;
 }
 
-// Of all lights in view that throw a shadow. `is_provisional`: an error search for them still runs.
-std::vector<Member> select_members(const World& world, std::span<const LightId> in_view, const Recipe& recipe,
-                                   const Camera& camera, float aspect, const SelectionInputs& inputs,
-                                   bool& is_provisional) {
+// A selection by error depends on no frame before: else each answer would change what the next is asked, and a still
+// picture might never rest.
+std::vector<Member> select_by_error(const World& world, std::span<const LightId> in_view, const Recipe& recipe,
+                                    const Camera& camera, float aspect, const SelectionInputs& inputs,
+                                    bool& is_provisional) {
   const auto lights = world.lights();
-  if (recipe.select == Select::per_light) return one_map_each(lights, in_view);
-  const bool by_error = recipe.select == Select::error_driven;
-  const bool has_limits = by_error && (recipe.max_maps || recipe.max_rmse);
-  // A selection by error depends on no frame before: else each answer would change what the next is asked, and a still
-  // picture might never rest.
-  SelectionInputs for_clusters = inputs;
-  if (by_error) for_clusters.previous_centers = {};
+  SelectionInputs of_frame = inputs;
+  of_frame.previous_centers = {};
+  const bool has_limits = recipe.max_maps || recipe.max_rmse;
   std::vector<Member> clusters;
-  if (!has_limits || inputs.search_beside_frames) clusters = clustered(lights, in_view, recipe, camera, for_clusters);
-  if (!by_error) return clusters;
+  if (!has_limits || inputs.search_beside_frames) clusters = clustered(lights, in_view, recipe, camera, of_frame);
   ErrorDriven& errors = inputs.surroundings->by_error();
   const ErrorTask task = error_task(world, in_view, clusters, recipe, camera, aspect, inputs);
   if (!inputs.search_beside_frames) return as_members(lights, in_view, errors.select(task));
   const std::optional<ErrorAnswer> answer = errors.select_beside(task);
   is_provisional = !answer || !answer->is_current;
   return answer ? as_members(lights, in_view, answer->members) : clusters;
+}
+
+// Of all lights in view that throw a shadow. `is_provisional`: an error search for them still runs.
+std::vector<Member> select_members(const World& world, std::span<const LightId> in_view, const Recipe& recipe,
+                                   const Camera& camera, float aspect, const SelectionInputs& inputs,
+                                   bool& is_provisional) {
+  switch (recipe.select) {
+    case Select::per_light:
+      return one_map_each(world.lights(), in_view);
+    case Select::light_clusters:
+      return clustered(world.lights(), in_view, recipe, camera, inputs);
+    case Select::error_driven:
+      return select_by_error(world, in_view, recipe, camera, aspect, inputs, is_provisional);
+  }
+  refuse_answer(recipe.select);
 }
 
 // A light that shall have another map than it has most of takes that alone.

@@ -54,18 +54,18 @@ GpuScene upload_scene(const gpu::Device& device, const World& world, const Uploa
 }
 
 std::vector<gpu::VertexStream> position_stream() {
-  return {{sizeof(pack::Position), {{.location = 0, .format = VK_FORMAT_R32G32B32_SFLOAT, .offset = 0}}}};
+  return {{sizeof(pack::Position), {{"position_ls", VK_FORMAT_R32G32B32_SFLOAT, 0}}}};
 }
 
 std::vector<gpu::VertexStream> position_and_attribute_streams() {
   auto streams = position_stream();
   using V = pack::VertexAttributes;
   streams.push_back({sizeof(V),
-                     {{.location = 1, .format = VK_FORMAT_R32_UINT, .offset = offsetof(V, normal_ls)},
-                      {.location = 2, .format = VK_FORMAT_R32_UINT, .offset = offsetof(V, tangent_ls)},
-                      {.location = 3, .format = VK_FORMAT_R32G32_SFLOAT, .offset = offsetof(V, uv0)},
-                      {.location = 4, .format = VK_FORMAT_R32G32_SFLOAT, .offset = offsetof(V, uv1)},
-                      {.location = 5, .format = VK_FORMAT_R8G8B8A8_UNORM, .offset = offsetof(V, color)}}});
+                     {{"normal_bits", VK_FORMAT_R32_UINT, offsetof(V, normal_ls)},
+                      {"tangent_bits", VK_FORMAT_R32_UINT, offsetof(V, tangent_ls)},
+                      {"uv0_in", VK_FORMAT_R32G32_SFLOAT, offsetof(V, uv0)},
+                      {"uv1_in", VK_FORMAT_R32G32_SFLOAT, offsetof(V, uv1)},
+                      {"color_in", VK_FORMAT_R8G8B8A8_UNORM, offsetof(V, color)}}});
   return streams;
 }
 

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 
+#include "shaders/g_buffer_frag.h"
+
 namespace chandelier {
 namespace {
 
-constexpr uint32_t textures_per_material = 5;
 struct Format {
   VkFormat format;
   uint32_t block_size;   // texels a side
@@ -106,10 +107,30 @@ std::vector<gpu::Owned<VkSampler>> make_samplers(const gpu::Device& device, floa
   return samplers;
 }
 
+// Texture slots in the pack's order, and the samplers of shading/material.glsl that read them.
+struct TextureSlot {
+  std::string_view sampler;
+  uint32_t pack::Material::*texture;
+};
+constexpr std::array<TextureSlot, 5> texture_slots{
+    {{"base_color_map", &pack::Material::base_color_texture},
+     {"metallic_roughness_map", &pack::Material::metallic_roughness_texture},
+     {"normal_map", &pack::Material::normal_texture},
+     {"occlusion_map", &pack::Material::occlusion_texture},
+     {"emissive_map", &pack::Material::emissive_texture}}};
+constexpr auto textures_per_material = static_cast<uint32_t>(texture_slots.size());
+
+// Where the shaders have a slot's sampler.
+uint32_t binding_of(const TextureSlot& slot) {
+  for (const gpu::Binding& binding : g_buffer_frag_bindings)
+    if (binding.set == 1 && binding.name == slot.sampler) return binding.number;
+  throw gpu::Error("g_buffer_frag: " + std::string(slot.sampler) + ": there is no such binding");
+}
+
 void make_material_layout(const gpu::Device& device, uint32_t materials, GpuScene& scene) {
   std::array<VkDescriptorSetLayoutBinding, textures_per_material> bindings{};
   for (uint32_t i = 0; i < textures_per_material; ++i)
-    bindings[i] = {.binding = i,
+    bindings[i] = {.binding = binding_of(texture_slots[i]),
                    .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                    .descriptorCount = 1,
                    .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT};
@@ -140,12 +161,6 @@ VkDescriptorImageInfo describe(const pack::View& pack, const GpuScene& scene, ui
   return {scene.samplers[sampler], image.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }
 
-// In the order of shading/material.glsl.
-std::array<uint32_t, textures_per_material> textures_of(const pack::Material& material) {
-  return {material.base_color_texture, material.metallic_roughness_texture, material.normal_texture,
-          material.occlusion_texture, material.emissive_texture};
-}
-
 VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& pack, const GpuScene& scene,
                                   const pack::Material& material) {
   const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
@@ -154,12 +169,11 @@ VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& p
                                          .pSetLayouts = scene.material_layout.address()};
   VkDescriptorSet set = VK_NULL_HANDLE;
   gpu::check(device->vkAllocateDescriptorSets(device.handle, &info, &set), "vkAllocateDescriptorSets");
-  const auto textures = textures_of(material);
-  for (uint32_t i = 0; i < textures_per_material; ++i) {
-    const VkDescriptorImageInfo image = describe(pack, scene, textures[i]);
+  for (const TextureSlot& slot : texture_slots) {
+    const VkDescriptorImageInfo image = describe(pack, scene, material.*slot.texture);
     const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                      .dstSet = set,
-                                     .dstBinding = i,
+                                     .dstBinding = binding_of(slot),
                                      .descriptorCount = 1,
                                      .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                      .pImageInfo = &image};
@@ -173,7 +187,8 @@ VkDescriptorSet make_material_set(const gpu::Device& device, const pack::View& p
 std::vector<glm::vec3> uv_rows(const pack::View& pack) {
   std::vector<glm::vec3> rows;
   for (const pack::Material& material : pack.materials) {
-    for (const uint32_t texture : textures_of(material)) {
+    for (const TextureSlot& slot : texture_slots) {
+      const uint32_t texture = material.*slot.texture;
       const bool absent = texture == pack::none;
       rows.push_back(absent ? glm::vec3(1, 0, 0) : pack.textures[texture].uv_transform[0]);
       rows.push_back(absent ? glm::vec3(0, 1, 0) : pack.textures[texture].uv_transform[1]);

@@ -18,7 +18,7 @@ struct Reflector {
   float smith_v;  // the eye's half of masking-shadowing
 };
 
-Reflector reflector(Surface s, vec3 to_eye) {
+Reflector glossy_reflector(Surface s, vec3 to_eye) {
   float a = max(s.roughness * s.roughness, 0.002);  // below, a highlight is smaller than any pixel
   float a2 = a * a;
   float n_dot_v = max(dot(s.normal, to_eye), 1e-4);

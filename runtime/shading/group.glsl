@@ -9,11 +9,8 @@
 #include "shading/surface.glsl"
 #include "shading/eye_position.glsl"
 
-layout(constant_id = 0) const uint filter_answer = 0u;
-layout(constant_id = 1) const uint shade_answer = 0u;
-layout(constant_id = 2) const uint lookup_answer = 0u;
-layout(constant_id = 3) const uint deliver_answer = 0u;
-layout(constant_id = 4) const uint projections = 3u;  // that the frame's maps have: PROJECTION_CUBE | PROJECTION_CASCADES
+// That the frame's maps have: PROJECTION_CUBE | PROJECTION_CASCADES. Answers have the numbers below.
+layout(constant_id = 100) const uint projections = 3u;
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, scalar) readonly buffer View { ViewConstants view; };
@@ -31,17 +28,9 @@ layout(binding = 11) uniform samplerCubeArray cube_depths;
 layout(binding = 12) uniform sampler2DArray layer_depths;
 layout(push_constant, scalar) uniform Push { ShadeConstants group; };
 
-#include "lookup/lookup.glsl"
-#include "shadows/filter/visibility.glsl"
-
-// LightCluster §3.2.2: beyond C_att no light of the map reaches. p: from the eye.
-bool in_range(ShadowMap map, vec3 p) {
-  return map.is_directional != 0u || length(from_center(map, p)) < map.range_m;
-}
-
-// Where a map's visibility texture keeps a pixel; NONE outside its rectangle.
-uint visibility_place(ShadowMap map, uvec2 pixel) {
-  uvec2 at = pixel - uvec2(map.rect_x, map.rect_y);  // left of it or above it wraps around to very large
-  bool inside = at.x < map.rect_width && at.y < map.rect_height;
-  return inside ? map.first_visibility + at.y * map.rect_width + at.x : NONE;
-}
+#include "shading/brdf.glsl"
+#include "shadows/filter/receiver_disc.glsl"
+#include "stages/lookup.glsl"
+#include "stages/filter.glsl"
+#include "stages/deliver.glsl"
+#include "stages/shade.glsl"

@@ -4,7 +4,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shading/group.glsl"
-#include "shading/brdf.glsl"
 
 // KHR_lights_punctual, spot lights.
 float cone_falloff(FrameLight light, vec3 to_light) {
@@ -30,14 +29,7 @@ vec3 unshadowed(uint number, Reflector r, vec3 geometric_normal, vec3 p) {
   float n_dot_l = dot(r.normal, to_light);
   bool reaches = falloff > 0.0 && n_dot_l > 0.0 && dot(geometric_normal, to_light) > 0.0;
   if (!reaches) return vec3(0.0);
-  vec3 reflected = shade_answer == SHADE_LAMBERT ? r.diffuse : ggx(r, to_light, n_dot_l);
-  return lights[number].radiant * (falloff * n_dot_l) * reflected;
-}
-
-float delivered_visibility(ShadowMap map, Receiver receiver, uvec2 pixel) {
-  if (deliver_answer == DELIVER_INLINE) return visibility(map, receiver);
-  uint place = visibility_place(map, pixel);
-  return place != NONE && in_range(map, receiver.p) ? float(uint(visibility_bytes[place])) / 255.0 : 0.0;
+  return lights[number].radiant * (falloff * n_dot_l) * reflected(r, to_light, n_dot_l);
 }
 
 // Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked. It also
@@ -45,7 +37,6 @@ float delivered_visibility(ShadowMap map, Receiver receiver, uvec2 pixel) {
 // reaches these pixels: visibility is read once for each map that does.
 vec3 lit_by_group(Surface s, vec3 p, uvec2 pixel) {
   Reflector r = reflector(s, normalize(-p));
-  if (shade_answer == SHADE_LAMBERT) r.diffuse = s.base_color / PI;
   Receiver receiver = receiver_at(p, s.geometric_normal);
   vec3 sum = vec3(0.0);
   uint light = next_light(group.first_light);
@@ -63,7 +54,7 @@ vec3 lit_by_group(Surface s, vec3 p, uvec2 pixel) {
       } while (light < map_end);
       reached = number == NONE || subgroupAny(largest(of_map) > 0.0);
     } while (!reached && light < group.light_end);
-    if (number != NONE && reached) of_map *= delivered_visibility(maps[number], receiver, pixel);
+    if (number != NONE && reached) of_map *= delivered(maps[number], receiver, pixel);
     sum += of_map;
   } while (light < group.light_end);
   return sum;

@@ -28,15 +28,18 @@ gpu::Owned<VkSampler> shadow_sampler(const gpu::Device& device, VkFilter filter,
 // Made when first needed: few of the combinations are ever drawn with.
 const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
                                   const Recipe& recipe, uint32_t projections) {
-  const std::array<uint32_t, 5> answers{static_cast<uint32_t>(recipe.filter), static_cast<uint32_t>(recipe.shade),
-                                        static_cast<uint32_t>(recipe.lookup), static_cast<uint32_t>(recipe.deliver),
-                                        projections};
-  const std::array<uint32_t, 6> key{
-      static_cast<uint32_t>(shader), answers[0], answers[1], answers[2], answers[3], answers[4]};
+  const auto number = [](auto answer) { return static_cast<uint32_t>(answer); };
+  const std::array<uint32_t, 6> key{number(shader),        number(recipe.filter),  number(recipe.shade),
+                                    number(recipe.lookup), number(recipe.deliver), projections};
   const auto found = pipelines.made.find(key);
   if (found != pipelines.made.end()) return found->second;
-  const gpu::Shader& code = shader == Shader::visibility ? visibility_comp : shade_comp;
-  return pipelines.made.emplace(key, gpu::make_compute_pipeline(device, code, {answers.begin(), answers.end()}))
+  const gpu::Constants filters{
+      {"filter_answer", number(recipe.filter)}, {"lookup_answer", number(recipe.lookup)}, {"projections", projections}};
+  gpu::Constants shades = filters;
+  shades.insert(shades.end(), {{"shade_answer", number(recipe.shade)}, {"deliver_answer", number(recipe.deliver)}});
+  return pipelines.made
+      .emplace(key, shader == Shader::visibility ? gpu::make_compute_pipeline(device, visibility_comp, filters)
+                                                 : gpu::make_compute_pipeline(device, shade_comp, shades))
       .first->second;
 }
 

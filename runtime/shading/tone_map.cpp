@@ -23,8 +23,9 @@ void computed_before_compute(gpu::Commands cmd) {
 }  // namespace
 
 TonePipelines make_tone_pipelines(const gpu::Device& device) {
-  return {gpu::make_compute_pipeline(device, exposure_comp, {0}),
-          gpu::make_compute_pipeline(device, exposure_comp, {1}), gpu::make_compute_pipeline(device, tone_map_comp)};
+  return {gpu::make_compute_pipeline(device, exposure_comp, {{"pass", 0}}),
+          gpu::make_compute_pipeline(device, exposure_comp, {{"pass", 1}}),
+          gpu::make_compute_pipeline(device, tone_map_comp)};
 }
 
 gpu::Buffer make_luminance_sums(const gpu::Device& device, uint32_t width, uint32_t height) {

@@ -3,6 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
 #include "frame_schema.glsl"
 
 struct Question {
@@ -20,11 +23,11 @@ layout(binding = 4, scalar) writeonly buffer Answers { float answers[]; };
 layout(binding = 5) uniform sampler2DArray layer_depths;
 
 const uint projections = 3u;  // PROJECTION_CUBE | PROJECTION_CASCADES
-#include "shadows/filter/hard.glsl"
+#include "shadows/filter/filter_hard.glsl"
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= uint(questions.length())) return;
   Question q = questions[i];
-  answers[i] = hard_visibility(maps[q.map], q.p, q.n);
+  answers[i] = visibility_hard(maps[q.map], Receiver(q.p, q.n, mat2x3(0.0), 0u));
 }

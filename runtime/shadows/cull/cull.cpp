@@ -97,10 +97,11 @@ CullPipelines make_cull_pipelines(const gpu::Device& device, Cull answer, bool k
   if (static_cast<size_t>(answer) >= cull_shaders.size()) refuse_answer(answer);
   const gpu::Shader& shader = *cull_shaders[static_cast<size_t>(answer)];
   const auto step = [&](Step number) {
-    return gpu::make_compute_pipeline(device, shader, {static_cast<uint32_t>(number), keep_order});
+    return gpu::make_compute_pipeline(device, shader,
+                                      {{"cull_step", static_cast<uint32_t>(number)}, {"keep_order", keep_order}});
   };
   return {gpu::make_compute_pipeline(device, block_boxes_comp), step(Step::find), step(Step::count),
-          gpu::make_compute_pipeline(device, plan_draws_comp, {keep_order}), step(Step::append)};
+          gpu::make_compute_pipeline(device, plan_draws_comp, {{"keep_order", keep_order}}), step(Step::append)};
 }
 
 CullState make_cull_state(const gpu::Device& device, gpu::Uploader& uploader, const DrawLists& lists) {

@@ -31,14 +31,12 @@ void begin_pass(gpu::Commands cmd, const CubeArray& store, uint32_t cubes, bool 
 }  // namespace
 
 CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene& scene) {
-  std::vector<gpu::VertexStream> with_uv = position_and_attribute_streams();
-  std::erase_if(with_uv[1].attributes, [](const auto& attribute) { return attribute.location < 3; });
   return {gpu::make_graphics_pipeline(
               device, {.vertex = caster_vert, .streams = position_stream(), .depth = VK_FORMAT_D32_SFLOAT}),
           gpu::make_graphics_pipeline(device, {.vertex = caster_masked_vert,
                                                .fragment = &caster_masked_frag,
                                                .more_sets = {scene.material_layout},
-                                               .streams = with_uv,
+                                               .streams = position_and_attribute_streams(),
                                                .depth = VK_FORMAT_D32_SFLOAT})};
 }
 

@@ -2,7 +2,9 @@
 // Filter answer `pcss`: percentage closer soft shadows (Fernando 2005) of the disc light that stands for a cluster
 // (LightCluster §3.2.2), which lies parallel to the receiver. Expects in scope, beside what shadow_lookup.glsl does, the
 // same depths without comparison: `samplerCubeArray cube_depths` and `sampler2DArray layer_depths`.
-#include "shadows/filter/pcf.glsl"
+#ifndef CHANDELIER_FILTER_PCSS_GLSL
+#define CHANDELIER_FILTER_PCSS_GLSL
+#include "shadows/filter/filter_pcf.glsl"
 
 struct Blockers {
   uint count;
@@ -113,7 +115,9 @@ float cascade_pcss(ShadowMap map, ShadowView cascade, Receiver r) {
   return lit_after(found, r, mates, cascade_pcf(disc, r.axes, radius_m, taps_after(found)), radius_m);
 }
 
-float pcss_visibility(ShadowMap map, Receiver r) {
+float visibility_pcss(ShadowMap map, Receiver r) {
   if (has_cascades(map)) return cascade_pcss(map, views[cascade_at(map, r.p)], r);
   return cube_pcss(map, r);
 }
+
+#endif

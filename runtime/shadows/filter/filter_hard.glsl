@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Filter answer `hard`: one comparison with the nearest texel, put right where its neighbours know better.
-#include "shadows/filter/texels.glsl"
+#ifndef CHANDELIER_FILTER_HARD_GLSL
+#define CHANDELIER_FILTER_HARD_GLSL
+#include "shadows/filter/receiver_disc.glsl"
 
 // The texel nearest to uv decides, but where two surfaces meet it may be the other one's. If no texel around the spot shows its
 // own surface, that ends behind the edge of what shadows it, and light that passes by beyond the edge is not for it. If one
@@ -22,13 +24,15 @@ float nearest_lit(Spot spot, vec2 uv, float layer) {
   return lit;
 }
 
-float hard_visibility(ShadowMap map, vec3 p, vec3 n) {
+float visibility_hard(ShadowMap map, Receiver r) {
   if (has_cascades(map)) {
-    ShadowView cascade = views[cascade_at(map, p)];
-    vec3 clip = to_cascade(cascade, vec4(p, 1.0));
-    return nearest_lit(cascade_spot(cascade, clip, n), clip.xy, float(cascade.layer));
+    ShadowView cascade = views[cascade_at(map, r.p)];
+    vec3 clip = to_cascade(cascade, vec4(r.p, 1.0));
+    return nearest_lit(cascade_spot(cascade, clip, r.n), clip.xy, float(cascade.layer));
   }
-  vec3 d = from_center(map, p);
+  vec3 d = from_center(map, r.p);
   vec3 on_face = to_face(d, d);
-  return nearest_lit(cube_spot(map.near_m, d, n, d), on_face.xy / on_face.z, float(6u * map.cube) + face_of(d));
+  return nearest_lit(cube_spot(map.near_m, d, r.n, d), on_face.xy / on_face.z, float(6u * map.cube) + face_of(d));
 }
+
+#endif

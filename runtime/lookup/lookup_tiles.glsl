@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which lights to look at for a pixel. Expects in scope: `uint tile_words[]`, `ShadeConstants group` and the answer.
-// The same for all threads of a work group, so that the group runs one loop: groups never reach over a tile's edge.
-#ifndef CHANDELIER_LOOKUP_GLSL
-#define CHANDELIER_LOOKUP_GLSL
+// Lookup answer `tiles`: the lights whose bits lookup/tiles.comp has set. The same for all threads of a work group, so that the
+// group runs one loop: groups never reach over a tile's edge.
+#ifndef CHANDELIER_LOOKUP_TILES_GLSL
+#define CHANDELIER_LOOKUP_TILES_GLSL
 #include "shading/strips.glsl"
 
-// The first light from `light` on that may reach this group's tile, or light_end.
-uint next_light(uint light) {
-  if (lookup_answer == LOOKUP_ALL) return light;
+uint next_light_tiles(uint light) {
   uvec2 tile = square_of_group() * gl_WorkGroupSize.xy / TILE_SIZE_PX;
   uint first_word = (tile.y * group.tiles_x + tile.x) * group.words_per_tile;
   while (light < group.light_end) {

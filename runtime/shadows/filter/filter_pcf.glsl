@@ -133,7 +133,7 @@ float lit_of_block(vec3 p, uint mates, Lit own, float radius_m) {
   return clamp((part - dot(slope, away) / weights) / weights, 0.0, 1.0);
 }
 
-float pcf_visibility(ShadowMap map, Receiver r) {
+float visibility_pcf(ShadowMap map, Receiver r) {
   if (has_cascades(map)) {
     ShadowView cascade = views[cascade_at(map, r.p)];
     float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
