@@ -88,11 +88,12 @@ FramePlan plan_frame(const World& world, const RenderSettings& settings, const G
   plan.select_ms = ms_since(start);
 
   start = Clock::now();
+  size_maps(plan.recipe, plan.list);
   if (plan.recipe.filter != Filter::rays)
-    plan.views = project_lights(plan.list, settings.camera, aspect, world.bounds(), plan.recipe.face_size_px);
+    plan.views = project_lights(plan.list, settings.camera, aspect, world.bounds());
   if (plan.recipe.deliver == Deliver::textures)
     place_visibility_rects(plan.list, settings.camera, settings.width, settings.height);
-  plan.groups = plan_groups(plan.list, plan.views, limits);
+  plan.groups = plan_groups(plan.list, limits);
   plan.view = view_constants(settings, aspect);
   plan.views.push_back({.clip_from_center = plan.view.clip_from_eye, .center_ws = plan.view.eye_ws});
   plan.project_ms = ms_since(start);
@@ -109,7 +110,7 @@ uint64_t ShadowMapCounter::count(float d_init_m, uint64_t most) {
 }
 
 FrameStats planned_stats(const World& world, const FramePlan& plan, const RenderSettings& settings) {
-  const uint64_t map_bytes = cube_bytes(settings.recipe.face_size_px);
+  const uint64_t cube = cube_bytes(settings.recipe.face_size_px);
   FrameStats stats;
   stats.lights = world.light_count();
   stats.lights_in_view = plan.list.lights_in_view;
@@ -120,9 +121,10 @@ FrameStats planned_stats(const World& world, const FramePlan& plan, const Render
   stats.reference_path = plan.recipe.select != settings.recipe.select;
   stats.shadow_maps = plan.recipe.filter == Filter::rays ? 0 : plan.list.maps.size();
   stats.shadow_views = plan.views.size() - 1;
-  stats.shadow_bytes = stats.shadow_maps * map_bytes;
+  if (stats.shadow_maps > 0)
+    for (const frame::ShadowMap& map : plan.list.maps) stats.shadow_bytes += cube_bytes(map.size_px);
   for (const MapGroup& group : plan.groups) {
-    const uint64_t held = stats.shadow_maps == 0 ? 0 : group.map_count * map_bytes;
+    const uint64_t held = stats.shadow_maps == 0 ? 0 : group.cube_count * cube;
     stats.shadow_pool_bytes = std::max(stats.shadow_pool_bytes, held);
     stats.visibility_bytes += group.visibility_bytes;
     stats.visibility_pool_bytes = std::max(stats.visibility_pool_bytes, group.visibility_bytes);

@@ -11,6 +11,7 @@ namespace {
 // The most of anything that a group of the frame needs.
 struct Needs {
   uint32_t cubes = 1;
+  uint32_t maps = 1;
   uint32_t views = 1;
   uint64_t visibility_bytes = 0;
 };
@@ -18,7 +19,10 @@ struct Needs {
 Needs needs_of(const FramePlan& plan) {
   Needs needs;
   for (const MapGroup& group : plan.groups) {
-    if (plan.recipe.filter != Filter::rays) needs.cubes = std::max(needs.cubes, group.map_count);
+    if (plan.recipe.filter != Filter::rays) {
+      needs.cubes = std::max(needs.cubes, group.cube_count);
+      needs.maps = std::max(needs.maps, group.map_count);
+    }
     needs.views = std::max(needs.views, group.view_count);
     needs.visibility_bytes = std::max(needs.visibility_bytes, group.visibility_bytes);
   }
@@ -42,12 +46,11 @@ void make_visibility(const gpu::Device& device, const RenderSettings& settings, 
 void make_store(const gpu::Device& device, const Recipe& recipe, uint32_t cubes, FrameSlot& slot,
                 FrameResources& resources) {
   CubeArray& store = resources.store;
-  if (store.face_size_px == recipe.face_size_px && store.cube_count >= cubes) return;
-  if (store.face_size_px == recipe.face_size_px)
+  if (store.layer_size_px == recipe.face_size_px && store.cube_count >= cubes) return;
+  if (store.layer_size_px == recipe.face_size_px)
     cubes = std::clamp(store.cube_count + store.cube_count / 2, cubes,
                        std::max(cubes, cubes_within(device, recipe.face_size_px, recipe.shadow_budget_bytes)));
   slot.retired.add(std::exchange(store, make_cube_array(device, recipe.face_size_px, cubes)));
-  resources.store_is_new = true;
 }
 
 void make_counters(const gpu::Device& device, size_t groups, FrameSlot& slot, gpu::Buffer& counters) {
@@ -96,7 +99,7 @@ void make_room(const gpu::Device& device, const RenderSettings& settings, const 
                   resources.visibility);
   make_store(device, settings.recipe, needs.cubes, slot, resources);
   make_room(device, {.most_draws = UINT32_MAX, .one_pass = true}, slot.retired, resources.camera_draws);
-  make_room(device, {.maps = needs.cubes, .views = needs.views, .most_draws = settings.most_caster_draws}, slot.retired,
+  make_room(device, {.maps = needs.maps, .views = needs.views, .most_draws = settings.most_caster_draws}, slot.retired,
             resources.shadow_draws);
   make_counters(device, plan.groups.size(), slot, resources.counters);
 }

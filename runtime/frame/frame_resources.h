@@ -35,7 +35,6 @@ struct FrameResources {
   Targets targets;
   gpu::Buffer luminance_sums;
   CubeArray store;
-  bool store_is_new = false;  // in no layout yet
   CullState camera_draws;
   CullState shadow_draws;
   gpu::Streamed view, lights, maps, views;

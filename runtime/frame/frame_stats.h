@@ -25,6 +25,7 @@ struct FrameStats {
   uint64_t light_clusters = 0;      // equals the number of the others where lights are not clustered
   uint64_t reference_path = 0;      // 1: clusters were asked for, but are nearly as many as lights (LightCluster §5.4)
   uint64_t shadow_maps = 0;
+  uint64_t shadow_maps_kept = 0;  // of them, those that lay in the store already (RenderSettings::keep_shadow_maps)
   uint64_t shadow_views = 0;
   uint64_t shadow_triangles = 0;
   uint64_t shadow_draws = 0;

@@ -25,6 +25,9 @@ struct RenderSettings {
   std::vector<uint32_t> previous_centers;  // FrameStats::centers of the frame before, where the recipe has stability
   std::vector<uint32_t> centers;           // whose map each light of the world takes; pack::none, or none: as selected
   uint64_t most_caster_draws = chandelier::most_caster_draws;  // kept at a time; what exceeds them takes more passes
+  /// Shadow maps whose depths are in the store from an earlier frame are not drawn again. The picture is the same; a
+  /// frame's counters of draws and triangles then depend on the frames before.
+  bool keep_shadow_maps = false;
   bool lights_out_of_view = false;  // are selected too, as for a camera that looks everywhere
   /// Select error-driven: a new view's search runs in a thread, and frames go on with the last answer until it ends
   /// (Renderer::has_new_selection()). Else draw() waits for it.

@@ -39,6 +39,7 @@ struct Planned {
   FramePlan plan;
   FrameStats stats;
   bool is_there = false;
+  bool is_placed = false;  // its maps have places, which stay unless maps are kept
 };
 
 // A frame that is being recorded.
@@ -115,6 +116,7 @@ struct Renderer::Impl {
 
   bool has_planned(const RenderSettings& settings) const;
   void plan(const RenderSettings& settings);
+  uint64_t place_maps(const RenderSettings& settings);
   Recording prepare(gpu::Commands cmd, FrameSlot& slot, const RenderSettings& settings);
   void record(const Recording& frame);
   FrameStats draw(FrameSlot& slot, const RenderSettings& settings);
@@ -136,10 +138,11 @@ bool Renderer::Impl::has_planned(const RenderSettings& settings) const {
 }
 
 void Renderer::Impl::plan(const RenderSettings& settings) {
-  planned.is_there = false;
+  planned.is_there = planned.is_placed = false;
   planned.plan =
       plan_frame(world, settings,
-                 {.maps = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes),
+                 {.cubes = cubes_within(device, settings.recipe.face_size_px, settings.recipe.shadow_budget_bytes),
+                  .layer_size_px = settings.recipe.face_size_px,
                   .views = most_views(scene.batch_instance_count, settings.most_caster_draws),
                   .visibility_bytes = device.limits.maxStorageBufferRange},
                  &surroundings);
@@ -149,11 +152,25 @@ void Renderer::Impl::plan(const RenderSettings& settings) {
   planned.is_there = true;
 }
 
+// Finds places in the store for the plan's maps, and returns how many are there already.
+uint64_t Renderer::Impl::place_maps(const RenderSettings& settings) {
+  FramePlan& plan = planned.plan;
+  KeptMaps& maps = resources.store.maps;
+  const bool has_places = std::exchange(planned.is_placed, true) && !settings.keep_shadow_maps;
+  if (has_places || plan.recipe.filter == Filter::rays) return 0;
+  for (const MapGroup& group : plan.groups) {
+    if (!settings.keep_shadow_maps) maps.forget();
+    maps.place(group, world, plan.list, plan.views);
+  }
+  return static_cast<uint64_t>(std::ranges::count(plan.list.maps, 1u, &frame::ShadowMap::is_kept));
+}
+
 // Takes the plan and makes room for it. The frame that used the slot has finished.
 Recording Renderer::Impl::prepare(gpu::Commands cmd, FrameSlot& slot, const RenderSettings& settings) {
   slot.reset();
   make_room(device, settings, planned.plan, slot, resources);
   slot.stats = planned.stats;
+  slot.stats.shadow_maps_kept = place_maps(settings);
   slot.groups = planned.plan.groups.size();
   slot.is_read = false;
   return {cmd, slot, settings, planned.plan};
@@ -171,7 +188,7 @@ void Renderer::Impl::record_uploads(const Recording& frame) {
   write.operator()<frame::ShadowView>(resources.views, {plan.views});
   cmd->vkCmdFillBuffer(cmd, resources.counters.handle, 0, VK_WHOLE_SIZE, 0);
   // A frame without shadow maps binds the store all the same.
-  if (std::exchange(resources.store_is_new, false))
+  if (std::exchange(resources.store.is_new, false))
     gpu::image_barrier(cmd, resources.store.depth, use::nothing, use::sampled);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
@@ -227,12 +244,18 @@ void Renderer::Impl::record_shadow_maps(const Recording& frame, uint32_t number)
     passes = record_cull(cmd, device, culling, scene, input, culled);
   }
   const Timed timed(frame, "rasterize");
-  begin_casters(cmd, resources.store);
+  const CasterInput drawn{.culled = culled,
+                          .views = input.views,
+                          .store = resources.store,
+                          .maps = std::span(plan.list.maps).subspan(group.first_map, group.map_count),
+                          .cube_count = group.cube_count,
+                          .keeps = settings.keep_shadow_maps};
+  begin_casters(cmd, drawn);
   for (uint32_t pass = 0; pass < passes; ++pass) {
     if (pass > 0) record_append(cmd, culling, scene, input, culled, pass);
-    record_casters(cmd, casters, scene, culled, input.views, resources.store, group.map_count, pass);
+    record_casters(cmd, casters, scene, drawn, pass);
   }
-  end_casters(cmd, resources.store);
+  end_casters(cmd, drawn);
 }
 
 // Adds the light of a group's lights. Where visibility comes from rays it is in `visibility` already.
@@ -277,7 +300,7 @@ void Renderer::Impl::record_end(const Recording& frame) {
 void Renderer::Impl::record(const Recording& frame) {
   const FramePlan& plan = frame.plan;
   const Version uploaded = scene.instances_version;
-  const bool store_is_new = resources.store_is_new;
+  const bool store_is_new = resources.store.is_new;
   try {
     record_start(frame);
     for (uint32_t group = 0; group < plan.groups.size(); ++group) {
@@ -287,7 +310,8 @@ void Renderer::Impl::record(const Recording& frame) {
     record_end(frame);
   } catch (...) {  // what was recorded is lost: the next frame does it again
     scene.instances_version = uploaded;
-    resources.store_is_new = store_is_new;
+    resources.store.is_new = store_is_new;
+    resources.store.maps.forget();
     throw;
   }
 }

@@ -15,11 +15,12 @@ struct Need {
   const char* name;
 };
 
-std::array<Need, 11> needs(Features& f) {
+std::array<Need, 12> needs(Features& f) {
   return {{{&f.core.features.fullDrawIndexUint32, "fullDrawIndexUint32"},
            {&f.core.features.imageCubeArray, "imageCubeArray"},
            {&f.core.features.multiDrawIndirect, "multiDrawIndirect"},
            {&f.core.features.drawIndirectFirstInstance, "drawIndirectFirstInstance"},
+           {&f.core.features.shaderClipDistance, "shaderClipDistance"},
            {&f.v12.drawIndirectCount, "drawIndirectCount"},
            {&f.v12.storageBuffer8BitAccess, "storageBuffer8BitAccess"},
            {&f.v12.scalarBlockLayout, "scalarBlockLayout"},
@@ -82,6 +83,7 @@ std::vector<NeededLimit> needed_limits(const VkPhysicalDeviceLimits& limits) {
           {"maxDrawIndirectCount", 65535, limits.maxDrawIndirectCount},
           {"maxBoundDescriptorSets", 2, limits.maxBoundDescriptorSets},
           {"maxPerStageDescriptorStorageBuffers", 14, limits.maxPerStageDescriptorStorageBuffers},
+          {"maxClipDistances", 4, limits.maxClipDistances},
           {"maxPushConstantsSize", 128, limits.maxPushConstantsSize},
           {"maxFramebufferLayers", 6, limits.maxFramebufferLayers},
           {"maxImageArrayLayers", 6, limits.maxImageArrayLayers}};

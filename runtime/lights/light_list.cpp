@@ -248,8 +248,9 @@ LightList make_list(std::span<const pack::Light> lights, std::vector<Member> mem
                            .range_m = member.map_range_m,
                            .near_m = pack::shadow_near_m(lights[member.center]),
                            .filter_radius_m = member.filter_radius_m,
-                           .first_light = static_cast<uint32_t>(i),
-                           .is_directional = is_directional(lights[member.center])});
+                           .projection = is_directional(lights[member.center]) ? frame::Projection::cascade
+                                                                               : frame::Projection::cube_face,
+                           .first_light = static_cast<uint32_t>(i)});
       list.map_direction_ws.push_back(lights[member.center].direction_ws);
       list.map_authored_radius_m.push_back(0.0f);
     }
@@ -338,7 +339,9 @@ std::vector<MapMeasures> measure_maps(const World& world, const LightList& list,
   std::vector<MapMeasures> measures;
   for (const frame::ShadowMap& map : list.maps) {
     const glm::vec3 center_ws = placed(list.center[map.first_light]).position_ws;
-    MapMeasures of_map{map.is_directional ? recipe.d_init_m : lights::scaled_d_min(settings, center_ws), 0.0f};
+    MapMeasures of_map{
+        map.projection == frame::Projection::cascade ? recipe.d_init_m : lights::scaled_d_min(settings, center_ws),
+        0.0f};
     for (uint32_t i = map.first_light; i < map.first_light + map.light_count; ++i) {
       const double distance_m = lights::metric_distance_m(placed(list.light_id[i]), center_ws);
       of_map.spread_m = std::max(of_map.spread_m,

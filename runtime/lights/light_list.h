@@ -19,7 +19,7 @@ namespace chandelier {
 /// light shares of several maps: then it stands in `lights` once for each, as bright as its share.
 struct LightList {
   std::vector<frame::FrameLight> lights;
-  std::vector<frame::ShadowMap> maps;         // cube, first_view and view_count are still open
+  std::vector<frame::ShadowMap> maps;         // their sizes, views and places are still open
   std::vector<float> map_authored_radius_m;   // of each map, as filter_radius_m: the largest radius of its lights
   std::vector<glm::vec3> map_direction_ws;    // the way that each map's centre shines: cascades are drawn along it
   std::vector<LightId> light_id;              // of each of `lights`

@@ -47,6 +47,7 @@ RenderSettings LiveScene::put_on_device(const Scene& scene) {
   RenderSettings wanted =
       render_settings(scene.options, scene.options.recipes.front().recipe, scene.camera.camera, made.visibility);
   wanted.search_beside_frames = true;
+  wanted.keep_shadow_maps = true;
   made.renderer.warm_up(wanted);
   on_device_.emplace(std::move(made));
   return wanted;

@@ -18,6 +18,7 @@ constexpr std::array all_counters{
     Counter{"light_clusters", &FrameStats::light_clusters, false},
     Counter{"reference_path", &FrameStats::reference_path, false},
     Counter{"shadow_maps", &FrameStats::shadow_maps, false},
+    Counter{"shadow_maps_kept", &FrameStats::shadow_maps_kept, false},
     Counter{"shadow_views", &FrameStats::shadow_views, false},
     Counter{"shadow_triangles", &FrameStats::shadow_triangles, false},
     Counter{"shadow_draws", &FrameStats::shadow_draws, false},

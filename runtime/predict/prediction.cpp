@@ -18,7 +18,8 @@ constexpr uint64_t most_visibility_bytes = uint64_t{128} << 20;
 // changes no other counter.
 GroupLimits limits_without_device(const pack::View& pack, const Recipe& recipe, uint64_t most_draws) {
   const uint64_t cubes = recipe.shadow_budget_bytes / cube_bytes(recipe.face_size_px);
-  return {.maps = static_cast<uint32_t>(std::clamp<uint64_t>(cubes, 1, most_layers / 6)),
+  return {.cubes = static_cast<uint32_t>(std::clamp<uint64_t>(cubes, 1, most_layers / 6)),
+          .layer_size_px = recipe.face_size_px,
           .views = most_views(pack.batch_instances.size(), most_draws),
           .visibility_bytes = most_visibility_bytes};
 }

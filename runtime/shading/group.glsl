@@ -9,7 +9,7 @@
 #include "shading/surface.glsl"
 #include "shading/eye_position.glsl"
 
-// That the frame's maps have: PROJECTION_CUBE | PROJECTION_CASCADES. Answers have the numbers below.
+// That the frame's maps have: a bit for each Projection. Answers have the numbers below.
 layout(constant_id = 100) const uint projections = 3u;
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -76,8 +76,8 @@ void record_over_picture(gpu::Commands cmd, const gpu::Device& device, ShadePipe
 
 uint32_t projections_of(std::span<const frame::ShadowMap> maps) {
   uint32_t projections = 0;
-  for (const frame::ShadowMap& map : maps) projections |= map.is_directional ? projection_cascades : projection_cube;
-  return projections ? projections : projection_cube;  // one variant less
+  for (const frame::ShadowMap& map : maps) projections |= 1u << static_cast<uint32_t>(map.projection);
+  return projections ? projections : 1u;  // one variant less
 }
 
 ShadePipelines make_shade_pipelines(const gpu::Device& device) {

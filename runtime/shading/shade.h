@@ -23,8 +23,7 @@ struct ShadePipelines {
 };
 ShadePipelines make_shade_pipelines(const gpu::Device& device);
 
-/// Which projections shadow maps have, a bit for each (shadows/filter/shadow_lookup.glsl).
-enum Projections : uint32_t { projection_cube = 1, projection_cascades = 2 };
+/// Which projections shadow maps have, a bit for each.
 uint32_t projections_of(std::span<const frame::ShadowMap> maps);
 
 struct ShadeInput {

@@ -141,12 +141,14 @@ class CubeLookupTest : public GpuTest {
     const Camera camera = look({0, 0, 40}, {0, 0, 0}, 1.0f);  // sees the whole room
     Maps maps;
     maps.list = select_lights(world, {}, camera, 1.0f);
-    maps.views = project_lights(maps.list, camera, 1.0f, world.bounds(), face_size_px);
+    size_maps({.face_size_px = face_size_px}, maps.list);
+    maps.views = project_lights(maps.list, camera, 1.0f, world.bounds());
     const auto count = static_cast<uint32_t>(maps.list.maps.size());
-    const auto groups = plan_groups(maps.list, maps.views, {.maps = count});
+    const auto groups = plan_groups(maps.list, {.cubes = count, .layer_size_px = face_size_px});
     EXPECT_EQ(groups.size(), 1u);
     const auto view_count = static_cast<uint32_t>(maps.views.size());
     maps.store = make_cube_array(device(), face_size_px, count);
+    maps.store.maps.place(groups[0], world, maps.list, maps.views);
 
     const CullPipelines cull = make_cull_pipelines(device(), Cull::light_frustum, false);
     const CasterPipelines casters = make_caster_pipelines(device(), scene);
@@ -168,9 +170,15 @@ class CubeLookupTest : public GpuTest {
                             .group = 0};
       record_boxes(cmd, device(), cull, scene, input, draws);
       EXPECT_EQ(record_cull(cmd, device(), cull, scene, input, draws), 1u);
-      begin_casters(cmd, maps.store);
-      record_casters(cmd, casters, scene, draws, views, maps.store, count, 0);
-      end_casters(cmd, maps.store);
+      const CasterInput drawn{.culled = draws,
+                              .views = views,
+                              .store = maps.store,
+                              .maps = maps.list.maps,
+                              .cube_count = count,
+                              .keeps = false};
+      begin_casters(cmd, drawn);
+      record_casters(cmd, casters, scene, drawn, 0);
+      end_casters(cmd, drawn);
     });
     return maps;
   }
@@ -179,7 +187,7 @@ class CubeLookupTest : public GpuTest {
     const auto pipeline = gpu::make_compute_pipeline(device(), lookup_comp);
     const auto nearest = gpu::make_sampler(device(), {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO});
     const gpu::Buffer view =
-        upload(std::vector<frame::ViewConstants>{{.face_size_px = static_cast<float>(maps.store.face_size_px)}});
+        upload(std::vector<frame::ViewConstants>{{.face_size_px = static_cast<float>(maps.store.layer_size_px)}});
     const gpu::Buffer map_buffer = upload(maps.list.maps), views = upload(maps.views), asked = upload(questions);
     const gpu::Buffer out =
         gpu::make_buffer(device(), questions.size() * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::readback);

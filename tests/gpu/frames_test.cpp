@@ -302,11 +302,12 @@ struct Engine {
 };
 
 // In every frame of this recipe but the first ones.
-void expect_no_allocations(Host& host, Renderer& renderer, Recipe recipe) {
+void expect_no_allocations(Host& host, Renderer& renderer, Recipe recipe, bool keep_shadow_maps = false) {
   recipe.face_size_px = 64;
   const auto settings_at = [&](float x) {
     RenderSettings settings = settings_from(x);
     settings.recipe = recipe;
+    settings.keep_shadow_maps = keep_shadow_maps;
     return settings;
   };
   for (const float x : {0.0f, 1.0f, 0.0f}) host.submit(settings_at(x));
@@ -354,6 +355,7 @@ TEST_F(FramesTest, AHostsDeviceIsAdoptedAndSteadyFramesAllocateNothing) {
   clusters.deliver = Deliver::textures;
   clusters.d_init_m = 2;
   expect_no_allocations(host, renderer, clusters);
+  expect_no_allocations(host, renderer, Recipe(), true);
 }
 
 TEST_F(FramesTest, AHostsDeviceThatDoesNotFitIsRefused) {

@@ -22,7 +22,7 @@ layout(binding = 3, scalar) readonly buffer Questions { Question questions[]; };
 layout(binding = 4, scalar) writeonly buffer Answers { float answers[]; };
 layout(binding = 5) uniform sampler2DArray layer_depths;
 
-const uint projections = 3u;  // PROJECTION_CUBE | PROJECTION_CASCADES
+const uint projections = 1u << PROJECTION_CUBE_FACE | 1u << PROJECTION_CASCADE;
 #include "shadows/filter/filter_hard.glsl"
 
 void main() {

@@ -10,6 +10,7 @@
 #include "../unit/world_of.h"
 #include "gpu_test.h"
 #include "shadows/project/shadow_views.h"
+#include "shadows/store/map_groups.h"
 
 namespace chandelier::test {
 namespace {
@@ -296,7 +297,8 @@ TEST_F(ShadowEdgeTest, DirectionalLight) {
   LightList list = select_lights(world_of(situation.occluded.lights), settings.recipe, settings.camera, 1.0f);
   const pack::File pack = situation.occluded.open();
   const Bounds bounds{pack.view().bake_info->bounds_min_ws, pack.view().bake_info->bounds_max_ws};
-  const auto views = project_lights(list, settings.camera, 1.0f, bounds, situation.face_size_px);
+  size_maps(settings.recipe, list);
+  const auto views = project_lights(list, settings.camera, 1.0f, bounds);
   const auto cascade = std::find_if(views.begin(), views.end(), [&](const frame::ShadowView& view) {
     return situation.camera_height_m <= view.far_m;  // the floor is all at one depth
   });
@@ -326,7 +328,8 @@ TEST_F(ShadowEdgeTest, DirectionalLightFarAndNear) {
   recipe.face_size_px = 512;
   const RenderSettings settings = settings_for(look({0.2f, 1.0f, 7.5f}, {-0.2f, 0.2f, 3}, 1.0f), 256, 192, recipe);
   LightList list = select_lights(world_of(scene.lights), recipe, settings.camera, 256.0f / 192.0f);
-  const auto views = project_lights(list, settings.camera, 256.0f / 192.0f, {{-8, 0, -8}, {8, 2, 8}}, 512);
+  size_maps(settings.recipe, list);
+  const auto views = project_lights(list, settings.camera, 256.0f / 192.0f, {{-8, 0, -8}, {8, 2, 8}});
   const float expected = 0.5f / pi * 3.0f * -direction.y;
   const Picture picture = draw(device(), scene, settings);
   Counts counts;

@@ -64,13 +64,13 @@ TEST(LightListTest, DirectionalLightsShareAMapWhereTheirDirectionsAreNear) {
   ASSERT_EQ(list.maps.size(), 3u);
   EXPECT_EQ(list.center, (std::vector<uint32_t>{1, 1, 1, 3, 4}));  // the brightest is the centre
   EXPECT_EQ(list.light_id, (std::vector<uint32_t>{0, 1, 2, 3, 4}));
-  EXPECT_EQ(list.maps[0].is_directional, 1u);
+  EXPECT_EQ(list.maps[0].projection, frame::Projection::cascade);
   EXPECT_EQ(list.maps[0].light_count, 3u);
   EXPECT_EQ(list.map_direction_ws[0], lights[1].direction_ws);
   EXPECT_EQ(list.lights[0].direction_ws, lights[0].direction_ws);  // each keeps its own
   EXPECT_FLOAT_EQ(list.maps[0].filter_radius_m, 0.3f * 1.01f);
   EXPECT_EQ(list.maps[1].filter_radius_m, 0.0f);
-  EXPECT_EQ(list.maps[2].is_directional, 0u);
+  EXPECT_EQ(list.maps[2].projection, frame::Projection::cube_face);
   EXPECT_EQ(select_lights(world_of(lights), clustering(0.99f), {}, 1.0f).maps.size(), 5u);
 }
 

@@ -130,7 +130,7 @@ TEST(LightListTest, PerLightKeepsWhatIsInViewInThePacksOrder) {
     EXPECT_EQ(list.maps[i].center_ws, lights[list.light_id[i]].position_ws);
     EXPECT_EQ(list.maps[i].range_m, lights[list.light_id[i]].range_m);
     EXPECT_EQ(list.maps[i].filter_radius_m, 0.0f);
-    EXPECT_EQ(list.maps[i].is_directional, i == 2 ? 1u : 0u);
+    EXPECT_EQ(list.maps[i].projection == frame::Projection::cascade, i == 2);
     EXPECT_EQ(list.lights[i].radiant, glm::vec3(2.0f, 1.0f, 0.5f));
   }
   // KHR_lights_punctual's cone: 1 at the inner angle, 0 at the outer.
@@ -163,8 +163,8 @@ TEST(LightListTest, LightClustersKeepTheirLightsTogether) {
       const frame::FrameLight& light = list.lights[i];
       EXPECT_FALSE(met[list.light_id[i]]);
       met[list.light_id[i]] = true;
-      EXPECT_EQ(map.is_directional != 0, light.type == static_cast<uint32_t>(pack::LightType::directional));
-      if (map.is_directional) continue;
+      EXPECT_EQ(map.projection == frame::Projection::cascade, light.type == static_cast<uint32_t>(pack::LightType::directional));
+      if (map.projection == frame::Projection::cascade) continue;
       EXPECT_LE(glm::distance(light.position_ws, map.center_ws) + light.range_m, map.range_m * 1.000001f);
       EXPECT_GE(map.filter_radius_m, 0.3f * recipe.d_init_m);
     }

@@ -89,7 +89,7 @@ TEST(VisibilityRectTest, NothingBehindTheCamera) {
 
 TEST(VisibilityRectTest, ADirectionalLightReachesEverything) {
   LightList list;
-  list.maps = {{.is_directional = 1}, {.center_ws = {0, 0, -10}, .range_m = 1.0f}};
+  list.maps = {{.projection = frame::Projection::cascade}, {.center_ws = {0, 0, -10}, .range_m = 1.0f}};
   place_visibility_rects(list, {}, width, height);
   EXPECT_EQ(visibility_bytes(list.maps[0]), width * height);
   EXPECT_GT(visibility_bytes(list.maps[1]), 50u);

@@ -38,7 +38,7 @@ void find_pairs() {
   if (keep_order == 0u) {
     uint map = cull.first_map + thread / cull.block_count;
     first_view = maps[map].first_view;
-    view_count = maps[map].view_count;
+    view_count = maps[map].is_kept != 0u ? 0u : maps[map].view_count;
   }
   uint bits = 0u;
   uint i = 0u;

@@ -5,7 +5,7 @@
 
 // LightCluster §3.2.2: beyond C_att no light of the map reaches. p: from the eye.
 bool in_range(ShadowMap map, vec3 p) {
-  return map.is_directional != 0u || length(from_center(map, p)) < map.range_m;
+  return map.projection == PROJECTION_CASCADE || length(from_center(map, p)) < map.range_m;
 }
 
 // Where a map's visibility texture keeps a pixel; NONE outside its rectangle.

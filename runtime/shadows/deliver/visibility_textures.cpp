@@ -56,8 +56,9 @@ PixelRect sphere_rect(const Camera& camera, uint32_t width, uint32_t height, con
 
 void place_visibility_rects(LightList& list, const Camera& camera, uint32_t width, uint32_t height) {
   for (frame::ShadowMap& map : list.maps) {
-    const PixelRect rect = map.is_directional ? PixelRect{0, 0, width, height}
-                                              : sphere_rect(camera, width, height, map.center_ws, map.range_m);
+    const PixelRect rect = map.projection == frame::Projection::cascade
+                               ? PixelRect{0, 0, width, height}
+                               : sphere_rect(camera, width, height, map.center_ws, map.range_m);
     map.rect_x = rect.x;
     map.rect_y = rect.y;
     map.rect_width = rect.width;

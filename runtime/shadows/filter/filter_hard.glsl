@@ -25,7 +25,7 @@ float nearest_lit(Spot spot, vec2 uv, float layer) {
 }
 
 float visibility_hard(ShadowMap map, Receiver r) {
-  if (has_cascades(map)) {
+  if (is_projected(map, PROJECTION_CASCADE)) {
     ShadowView cascade = views[cascade_at(map, r.p)];
     vec3 clip = to_cascade(cascade, vec4(r.p, 1.0));
     return nearest_lit(cascade_spot(cascade, clip, r.n), clip.xy, float(cascade.layer));

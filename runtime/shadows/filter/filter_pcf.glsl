@@ -134,7 +134,7 @@ float lit_of_block(vec3 p, uint mates, Lit own, float radius_m) {
 }
 
 float visibility_pcf(ShadowMap map, Receiver r) {
-  if (has_cascades(map)) {
+  if (is_projected(map, PROJECTION_CASCADE)) {
     ShadowView cascade = views[cascade_at(map, r.p)];
     float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
     Lit own = cascade_pcf(cascade_disc(map, cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m, DISC_TAPS);

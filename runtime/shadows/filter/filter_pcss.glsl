@@ -116,7 +116,7 @@ float cascade_pcss(ShadowMap map, ShadowView cascade, Receiver r) {
 }
 
 float visibility_pcss(ShadowMap map, Receiver r) {
-  if (has_cascades(map)) return cascade_pcss(map, views[cascade_at(map, r.p)], r);
+  if (is_projected(map, PROJECTION_CASCADE)) return cascade_pcss(map, views[cascade_at(map, r.p)], r);
   return cube_pcss(map, r);
 }
 

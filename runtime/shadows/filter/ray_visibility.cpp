@@ -63,7 +63,8 @@ void fill_visibility(const FramePlan& plan, const MapGroup& group, std::span<con
       const auto row = points.subspan(size_t{y} * width + map.rect_x, map.rect_width);
       in_rect.insert(in_rect.end(), row.begin(), row.end());
     }
-    const float radius_m = map.is_directional ? map.filter_radius_m / plan.recipe.z_far_m : map.filter_radius_m;
+    const bool directional = map.projection == frame::Projection::cascade;
+    const float radius_m = directional ? map.filter_radius_m / plan.recipe.z_far_m : map.filter_radius_m;
     source({plan.list.lights[map.first_light], map.near_m, radius_m, plan.view.eye_ws, in_rect,
             bytes.subspan(map.first_visibility, visibility_bytes(map))});
   }

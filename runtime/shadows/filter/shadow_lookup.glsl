@@ -9,13 +9,11 @@
 // Float rounding of depth on its way through matrix, rasterizer and sampler, relative.
 const float DEPTH_ROUNDING = 1e-4;
 
-// Which projections a frame's maps have, a bit for each (shading/shade.h). A shader is specialized for them: a driver that
+// `projections` has a bit for each projection that the frame's maps have. A shader is specialized for them: a driver that
 // executes both sides of a branch would pay for the projection that no map has.
-const uint PROJECTION_CUBE = 1u, PROJECTION_CASCADES = 2u;
-
-bool has_cascades(ShadowMap map) {
-  if ((projections & PROJECTION_CASCADES) == 0u) return false;
-  return (projections & PROJECTION_CUBE) == 0u || map.is_directional != 0u;
+bool is_projected(ShadowMap map, uint projection) {
+  if ((projections & 1u << projection) == 0u) return false;
+  return projections == 1u << projection || map.projection == projection;
 }
 
 // A point as the centre of a map sees it.

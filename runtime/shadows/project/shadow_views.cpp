@@ -21,7 +21,9 @@ frame::ShadowView cube_view(const frame::ShadowMap& map, uint32_t face, float te
                                       glm::vec4(axes.major, 0)),
           .center_ws = map.center_ws,
           .range_m = map.range_m,
+          .projection = frame::Projection::cube_face,
           .layer = face,
+          .size_px = map.size_px,
           .texel_m = texel_m,
           .far_m = 0.0f};
 }
@@ -50,8 +52,8 @@ bool reaches_face(const CubeFace& face, const frame::ShadowMap& map, const frame
   return true;
 }
 
-void project_cube(const LightList& list, uint32_t map_number, float texel_m, std::vector<frame::ShadowView>& views) {
-  const frame::ShadowMap& map = list.maps[map_number];
+void project_cube(const LightList& list, const frame::ShadowMap& map, std::vector<frame::ShadowView>& views) {
+  const float texel_m = 2.0f / static_cast<float>(map.size_px);  // a face is two metres wide at one metre
   const std::span members(list.lights.begin() + map.first_light, map.light_count);
   for (uint32_t face = 0; face < 6; ++face) {
     const bool needed = std::any_of(members.begin(), members.end(), [&](const frame::FrameLight& light) {
@@ -97,10 +99,10 @@ Sphere slice_sphere(const Camera& camera, float aspect, float near_m, float far_
 }
 
 frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& eye_ws, const glm::vec3& direction,
-                               const Bounds& bounds, uint32_t cascade, float far_m, uint32_t face_size_px) {
+                               const Bounds& bounds, uint32_t cascade, float far_m, uint32_t size_px) {
   const CameraAxes axes = axes_of({.forward_ws = direction});
   // Six texels of margin on each side, for snapping, normal offset and filter.
-  const float texels = static_cast<float>(std::max(face_size_px, 16u) - 12u);
+  const float texels = static_cast<float>(std::max(size_px, 16u) - 12u);
   const float texel_m = 2.0f * sphere.radius_m / texels;
   // To texels of the world, so that edges stand still when the camera moves; then seen from the eye.
   const auto snapped = [&](const glm::vec3& axis) {
@@ -117,7 +119,7 @@ frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& eye_ws, co
   const float margin = 0.01f + 0.001f * (farthest - nearest);
   nearest -= margin;
   farthest += margin;
-  const float scale = 2.0f / (texel_m * static_cast<float>(face_size_px));
+  const float scale = 2.0f / (texel_m * static_cast<float>(size_px));
   const float depth_scale = 1.0f / (farthest - nearest);
   return {.clip_from_center =
               columns(glm::vec4(axes.right * scale, -snapped(axes.right) * scale),
@@ -125,18 +127,20 @@ frame::ShadowView cascade_view(const Sphere& sphere, const glm::vec3& eye_ws, co
                       glm::vec4(-axes.forward * depth_scale, farthest * depth_scale), glm::vec4(0, 0, 0, 1)),
           .center_ws = eye_ws,
           .range_m = 0.0f,
+          .projection = frame::Projection::cascade,
           .layer = cascade,
+          .size_px = size_px,
           .texel_m = texel_m,
           .far_m = far_m};
 }
 
 void project_cascades(const LightList& list, uint32_t map_number, const Camera& camera, float aspect,
-                      const Bounds& bounds, uint32_t face_size_px, std::vector<frame::ShadowView>& views) {
+                      const Bounds& bounds, std::vector<frame::ShadowView>& views) {
   const glm::vec3 direction = list.map_direction_ws[map_number];
   const auto splits = split_depths(camera, bounds);
   for (uint32_t i = 0; i < frame::cascade_count; ++i)
     views.push_back(cascade_view(slice_sphere(camera, aspect, splits[i], splits[i + 1]), camera.eye_ws, direction,
-                                 bounds, i, splits[i + 1], face_size_px));
+                                 bounds, i, splits[i + 1], list.maps[map_number].size_px));
 }
 
 }  // namespace
@@ -159,17 +163,20 @@ CubeFace cube_face(uint32_t face) {
   }
 }
 
-std::vector<frame::ShadowView> project_lights(LightList& list, const Camera& camera, float aspect, const Bounds& bounds,
-                                              uint32_t face_size_px) {
-  const float texel_m = 2.0f / static_cast<float>(face_size_px);  // a face is two metres wide at one metre
+std::vector<frame::ShadowView> project_lights(LightList& list, const Camera& camera, float aspect,
+                                              const Bounds& bounds) {
   std::vector<frame::ShadowView> views;
   for (uint32_t i = 0; i < list.maps.size(); ++i) {
     frame::ShadowMap& map = list.maps[i];
     map.first_view = static_cast<uint32_t>(views.size());
-    if (map.is_directional)
-      project_cascades(list, i, camera, aspect, bounds, face_size_px, views);
-    else
-      project_cube(list, i, texel_m, views);
+    switch (map.projection) {
+      case frame::Projection::cube_face:
+        project_cube(list, map, views);
+        break;
+      case frame::Projection::cascade:
+        project_cascades(list, i, camera, aspect, bounds, views);
+        break;
+    }
     map.view_count = static_cast<uint32_t>(views.size()) - map.first_view;
   }
   return views;

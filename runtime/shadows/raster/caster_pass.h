@@ -3,23 +3,32 @@
 // everything opaque and one per alpha-tested material.
 #pragma once
 
+#include <span>
+
 #include "shadows/cull/cull.h"
 #include "shadows/store/cube_array.h"
 
 namespace chandelier {
 
 struct CasterPipelines {
-  gpu::Pipeline opaque;
-  gpu::Pipeline masked;
+  gpu::Pipeline opaque, masked;                // for views that have whole layers
+  gpu::Pipeline opaque_placed, masked_placed;  // for views that have squares of layers
 };
 CasterPipelines make_caster_pipelines(const gpu::Device& device, const GpuScene& scene);
 
-/// Between these two, passes are drawn into the first `cubes` cubes of the store; the second leaves it ready to be
-/// sampled.
-void begin_casters(gpu::Commands cmd, const CubeArray& store);
-void end_casters(gpu::Commands cmd, const CubeArray& store);
-/// Draws what `culled` has for this pass. The first pass clears the cubes.
-void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const GpuScene& scene, const CullState& culled,
-                    const gpu::Buffer& views, const CubeArray& store, uint32_t cubes, uint32_t pass);
+struct CasterInput {
+  const CullState& culled;
+  const gpu::Buffer& views;                // frame ShadowView
+  const CubeArray& store;                  // in which `maps` lie
+  std::span<const frame::ShadowMap> maps;  // of the group
+  uint32_t cube_count;                     // that they take; the first ones where nothing is kept
+  bool keeps;                              // what else lies in the store has to stay
+};
+/// Between these two, passes are drawn into the store; the second leaves it ready to be sampled.
+void begin_casters(gpu::Commands cmd, const CasterInput& input);
+void end_casters(gpu::Commands cmd, const CasterInput& input);
+/// Draws what was culled for this pass. The first pass clears the maps that are not kept.
+void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const GpuScene& scene,
+                    const CasterInput& input, uint32_t pass);
 
 }  // namespace chandelier

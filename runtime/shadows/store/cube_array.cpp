@@ -11,22 +11,23 @@ uint32_t cubes_within(const gpu::Device& device, uint32_t face_size_px, uint64_t
   return static_cast<uint32_t>(std::max<uint64_t>(1, std::min(by_budget, by_layers)));
 }
 
-CubeArray make_cube_array(const gpu::Device& device, uint32_t face_size_px, uint32_t cube_count) {
-  if (face_size_px > device.limits.maxImageDimensionCube)
-    throw gpu::Error("shadow faces of " + std::to_string(face_size_px) + " texels are too large for this device (" +
+CubeArray make_cube_array(const gpu::Device& device, uint32_t layer_size_px, uint32_t cube_count) {
+  if (layer_size_px > device.limits.maxImageDimensionCube)
+    throw gpu::Error("shadow faces of " + std::to_string(layer_size_px) + " texels are too large for this device (" +
                      std::to_string(device.limits.maxImageDimensionCube) + ")");
   CubeArray store;
   store.depth =
       gpu::make_image(device, {.format = VK_FORMAT_D32_SFLOAT,
-                               .width = face_size_px,
-                               .height = face_size_px,
+                               .width = layer_size_px,
+                               .height = layer_size_px,
                                .layers = 6 * cube_count,
                                .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                                .flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT,
                                .view_type = VK_IMAGE_VIEW_TYPE_2D_ARRAY});
   store.cubes = gpu::make_view(device, store.depth, VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, 0, 6 * cube_count);
-  store.face_size_px = face_size_px;
+  store.layer_size_px = layer_size_px;
   store.cube_count = cube_count;
+  store.maps = KeptMaps(layer_size_px, cube_count);
   return store;
 }
 

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Store answer `cube-array`: a pool of cubes of one size. A map takes six layers of it; where there are more maps than
-// cubes, the frame draws and shades them in groups.
+// Store answer `cube-array`: a pool of cubes, which are six layers each. A map takes six layers of it or, where it is
+// smaller, the same square of all six. Where there are more maps than fit, the frame draws and shades them in groups.
 #pragma once
 
 #include "gpu/resources.h"
 #include "shadows/store/cube_bytes.h"
+#include "shadows/store/kept_maps.h"
 
 namespace chandelier {
 
 struct CubeArray {
   gpu::Image depth;               // its own view is a 2D array: cascades are read through it, and it is drawn to
   gpu::Owned<VkImageView> cubes;  // the same layers as a cube array
-  uint32_t face_size_px = 0;
+  uint32_t layer_size_px = 0;
   uint32_t cube_count = 0;
+  bool is_new = true;  // in no layout yet
+  KeptMaps maps;       // what lies where
 };
 
 /// How many cubes the pool may have: at least one.
 uint32_t cubes_within(const gpu::Device& device, uint32_t face_size_px, uint64_t budget_bytes);
 
-CubeArray make_cube_array(const gpu::Device& device, uint32_t face_size_px, uint32_t cube_count);
+CubeArray make_cube_array(const gpu::Device& device, uint32_t layer_size_px, uint32_t cube_count);
 
 }  // namespace chandelier

@@ -9,9 +9,13 @@
 
 namespace chandelier {
 
+/// How large each map is: what store `cube-array` says, one size for all.
+void size_maps(const Recipe& recipe, LightList& list);
+
 struct MapGroup {
   uint32_t first_map;
   uint32_t map_count;
+  uint32_t cube_count;  // of the store, that they take
   uint32_t first_view;
   uint32_t view_count;
   uint32_t first_light;
@@ -22,13 +26,14 @@ struct MapGroup {
 
 /// What a group may hold at most. A single map may exceed all but the first.
 struct GroupLimits {
-  uint32_t maps = 1;
+  uint32_t cubes = 1;          // of the store
+  uint32_t layer_size_px = 1;  // width of the store's layers; no map is larger
   uint64_t views = UINT64_MAX;
   uint64_t visibility_bytes = UINT64_MAX;
 };
 
-/// Splits the maps into groups, the last of which has the lights without shadow too, and gives every map its cube and
-/// the place of its visibility texture, and every view its layer.
-std::vector<MapGroup> plan_groups(LightList& list, std::vector<frame::ShadowView>& views, const GroupLimits& limits);
+/// Splits the maps into groups, the last of which has the lights without shadow too, and gives every map the place of
+/// its visibility texture.
+std::vector<MapGroup> plan_groups(LightList& list, const GroupLimits& limits);
 
 }  // namespace chandelier
