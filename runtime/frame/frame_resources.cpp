@@ -43,16 +43,6 @@ void make_visibility(const gpu::Device& device, const RenderSettings& settings, 
   slot.retired.add(std::exchange(visibility, std::move(made)));
 }
 
-void make_store(const gpu::Device& device, const Recipe& recipe, uint32_t cubes, FrameSlot& slot,
-                FrameResources& resources) {
-  CubeArray& store = resources.store;
-  if (store.layer_size_px == recipe.face_size_px && store.cube_count >= cubes) return;
-  if (store.layer_size_px == recipe.face_size_px)
-    cubes = std::clamp(store.cube_count + store.cube_count / 2, cubes,
-                       std::max(cubes, cubes_within(device, recipe.face_size_px, recipe.shadow_budget_bytes)));
-  slot.retired.add(std::exchange(store, make_cube_array(device, recipe.face_size_px, cubes)));
-}
-
 void make_counters(const gpu::Device& device, size_t groups, FrameSlot& slot, gpu::Buffer& counters) {
   const VkDeviceSize bytes = (groups + 1) * sizeof(frame::CullCounters);
   constexpr VkBufferUsageFlags usage =
@@ -97,7 +87,7 @@ void make_room(const gpu::Device& device, const RenderSettings& settings, const 
     make_tile_lists(device, settings.width, settings.height, light_count(plan), slot.retired, resources.tiles);
   make_visibility(device, settings, needs.visibility_bytes, plan.recipe.filter == Filter::rays, slot,
                   resources.visibility);
-  make_store(device, settings.recipe, needs.cubes, slot, resources);
+  make_room(device, settings.recipe, needs.cubes, slot.retired, resources.store);
   make_room(device, {.most_draws = UINT32_MAX, .one_pass = true}, slot.retired, resources.camera_draws);
   make_room(device, {.maps = needs.maps, .views = needs.views, .most_draws = settings.most_caster_draws}, slot.retired,
             resources.shadow_draws);

@@ -124,6 +124,7 @@ struct Renderer::Impl {
   const FrameStats& read_stats(FrameSlot& slot);
   void check_drawn() const;
 
+  void record_device_plan(const Recording& frame);
   void record_start(const Recording& frame);
   void record_uploads(const Recording& frame);
   void record_shadow_maps(const Recording& frame, uint32_t group);
@@ -195,6 +196,21 @@ void Renderer::Impl::record_uploads(const Recording& frame) {
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
 }
 
+// What the device decides for itself, once it has drawn what the camera sees: nothing is read back.
+void Renderer::Impl::record_device_plan(const Recording& frame) {
+  const auto& [cmd, slot, settings, plan] = frame;
+  switch (plan.recipe.lookup) {
+    case Lookup::all:
+      return;
+    case Lookup::tiles: {
+      const Timed timed(frame, "lookup");
+      record_tiles(cmd, tile_pipeline, resources.view.buffer(), resources.lights.buffer(), light_count(plan),
+                   resources.targets, resources.tiles);
+      return;
+    }
+  }
+}
+
 // What the camera sees, and which lights reach it.
 void Renderer::Impl::record_start(const Recording& frame) {
   const auto& [cmd, slot, settings, plan] = frame;
@@ -216,10 +232,7 @@ void Renderer::Impl::record_start(const Recording& frame) {
     record_cull(cmd, device, camera_cull, scene, camera, resources.camera_draws);
     record_g_buffer(cmd, g_buffer, scene, resources.camera_draws, resources.view.buffer(), resources.targets);
   }
-  if (plan.recipe.lookup != Lookup::tiles) return;
-  const Timed timed(frame, "lookup");
-  record_tiles(cmd, tile_pipeline, resources.view.buffer(), resources.lights.buffer(), light_count(plan),
-               resources.targets, resources.tiles);
+  record_device_plan(frame);
 }
 
 // Draws the shadow maps of a group.

@@ -31,4 +31,13 @@ CubeArray make_cube_array(const gpu::Device& device, uint32_t layer_size_px, uin
   return store;
 }
 
+void make_room(const gpu::Device& device, const Recipe& recipe, uint32_t cubes, gpu::Retired& retired,
+               CubeArray& store) {
+  const uint32_t size_px = recipe.face_size_px;
+  if (store.layer_size_px == size_px && store.cube_count >= cubes) return;
+  const uint32_t most = std::max(cubes, cubes_within(device, size_px, recipe.shadow_budget_bytes));
+  if (store.layer_size_px == size_px) cubes = std::clamp(store.cube_count + store.cube_count / 2, cubes, most);
+  retired.add(std::exchange(store, make_cube_array(device, size_px, cubes)));
+}
+
 }  // namespace chandelier

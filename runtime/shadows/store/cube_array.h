@@ -3,7 +3,9 @@
 // smaller, the same square of all six. Where there are more maps than fit, the frame draws and shades them in groups.
 #pragma once
 
+#include "gpu/frames.h"
 #include "gpu/resources.h"
+#include "recipe_schema.h"
 #include "shadows/store/cube_bytes.h"
 #include "shadows/store/kept_maps.h"
 
@@ -22,5 +24,9 @@ struct CubeArray {
 uint32_t cubes_within(const gpu::Device& device, uint32_t face_size_px, uint64_t budget_bytes);
 
 CubeArray make_cube_array(const gpu::Device& device, uint32_t layer_size_px, uint32_t cube_count);
+
+/// Keeps a pool that has `cubes` cubes of the recipe's size, and retires one that has not.
+void make_room(const gpu::Device& device, const Recipe& recipe, uint32_t cubes, gpu::Retired& retired,
+               CubeArray& store);
 
 }  // namespace chandelier
