@@ -5,6 +5,7 @@
 
 #include "gpu/allocator.h"
 #include "gpu/instance.h"
+#include "gpu/pipeline_cache.h"
 #include "gpu/requirements.h"
 
 namespace chandelier::gpu {
@@ -121,11 +122,13 @@ void Device::start() {
                                      .queueFamilyIndex = queue_family};
   check(functions_->vkCreateCommandPool(handle, &pool, nullptr, &command_pool), "vkCreateCommandPool");
   allocator_ = std::make_unique<Allocator>(*this);
+  pipelines_ = std::make_unique<PipelineCache>();
 }
 
 void Device::end() {
   if (functions_) {
     if (owns_) functions_->vkDeviceWaitIdle(handle);  // a host waits for its own queues
+    pipelines_.reset();
     allocator_.reset();
     if (command_pool) functions_->vkDestroyCommandPool(handle, command_pool, nullptr);
     if (owns_) functions_->vkDestroyDevice(handle, nullptr);

@@ -15,6 +15,7 @@
 
 namespace chandelier::gpu {
 
+struct PipelineCache;
 class Allocator;
 
 /// A Vulkan call failed, or no device fits. what() is one line.
@@ -70,6 +71,7 @@ class Device {
   const VolkDeviceTable* functions() const { return functions_.get(); }
   const InstanceFunctions& instance_functions() const { return instance_functions_; }
   Allocator& allocator() const { return *allocator_; }
+  PipelineCache& pipelines() const { return *pipelines_; }
 
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
@@ -100,6 +102,7 @@ class Device {
   InstanceFunctions instance_functions_;
   DeviceFunctions functions_;
   std::unique_ptr<Allocator> allocator_;
+  std::unique_ptr<PipelineCache> pipelines_;
   bool owns_ = false;  // instance and device
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   std::shared_ptr<std::vector<std::string>> validation_messages_ = std::make_shared<std::vector<std::string>>();

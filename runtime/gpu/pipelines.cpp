@@ -7,6 +7,8 @@
 #include <array>
 #include <ranges>
 
+#include "gpu/pipeline_cache.h"
+
 namespace chandelier::gpu {
 namespace {
 
@@ -54,7 +56,7 @@ void make_layout(const Device& device, std::span<const VkDescriptorSetLayout> mo
                                                  .pBindings = bindings.data()};
   VkDescriptorSetLayout set = VK_NULL_HANDLE;
   check(device->vkCreateDescriptorSetLayout(device.handle, &set_info, nullptr, &set), "vkCreateDescriptorSetLayout");
-  pipeline.set_layout = {device.handle, set, device->vkDestroyDescriptorSetLayout};
+  pipeline.set_layout = Owned<VkDescriptorSetLayout>{device.handle, set, device->vkDestroyDescriptorSetLayout};
 
   std::vector<VkDescriptorSetLayout> sets{set};
   sets.insert(sets.end(), more_sets.begin(), more_sets.end());
@@ -66,7 +68,7 @@ void make_layout(const Device& device, std::span<const VkDescriptorSetLayout> mo
                                                .pPushConstantRanges = &range};
   VkPipelineLayout layout = VK_NULL_HANDLE;
   check(device->vkCreatePipelineLayout(device.handle, &layout_info, nullptr, &layout), "vkCreatePipelineLayout");
-  pipeline.layout = {device.handle, layout, device->vkDestroyPipelineLayout};
+  pipeline.layout = Owned<VkPipelineLayout>{device.handle, layout, device->vkDestroyPipelineLayout};
 }
 
 const Named* named(std::span<const Named> all, std::string_view name) {
@@ -142,21 +144,37 @@ Bound storage_image(const Image& image) {
   return {.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, .image = {VK_NULL_HANDLE, image.view, VK_IMAGE_LAYOUT_GENERAL}};
 }
 
-Pipeline make_compute_pipeline(const Device& device, const Shader& shader, const Constants& constants) {
+namespace {
+
+Pipeline compile(const Device& device, const Shader& shader, const Specialization& specialization) {
   Pipeline pipeline{.bind_point = VK_PIPELINE_BIND_POINT_COMPUTE, .name = shader.name, .local_size = shader.local_size};
   add_shader(shader, 1, pipeline);
   make_layout(device, {}, pipeline);
   const auto module = make_module(device, shader.words);
-  check_constants(constants, shader);
-  const Specialization specialization(shader, constants);
   const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                                          .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, specialization),
                                          .layout = pipeline.layout};
   VkPipeline handle = VK_NULL_HANDLE;
   check(device->vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
         "vkCreateComputePipelines");
-  pipeline.handle = {device.handle, handle, device->vkDestroyPipeline};
+  pipeline.handle = Owned<VkPipeline>{device.handle, handle, device->vkDestroyPipeline};
   return pipeline;
+}
+
+}  // namespace
+
+Pipeline make_compute_pipeline(const Device& device, const Shader& shader, const Constants& constants) {
+  check_constants(constants, shader);
+  const Specialization specialization(shader, constants);
+  PipelineCache::Key key{shader.words.data(), {}};
+  for (size_t i = 0; i < specialization.values.size(); ++i)
+    key.second.emplace_back(specialization.entries[i].constantID, specialization.values[i]);
+  std::ranges::sort(key.second);
+  PipelineCache& made = device.pipelines();
+  const std::scoped_lock lock(made.mutex);
+  const auto found = made.compute.find(key);
+  if (found != made.compute.end()) return found->second;
+  return made.compute.emplace(key, compile(device, shader, specialization)).first->second;
 }
 
 Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
@@ -227,7 +245,7 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
   VkPipeline handle = VK_NULL_HANDLE;
   check(device->vkCreateGraphicsPipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &handle),
         "vkCreateGraphicsPipelines");
-  pipeline.handle = {device.handle, handle, device->vkDestroyPipeline};
+  pipeline.handle = Owned<VkPipeline>{device.handle, handle, device->vkDestroyPipeline};
   return pipeline;
 }
 

@@ -29,9 +29,9 @@ struct Resource {
 };
 
 struct Pipeline {
-  Owned<VkDescriptorSetLayout> set_layout;
-  Owned<VkPipelineLayout> layout;
-  Owned<VkPipeline> handle;
+  Shared<VkDescriptorSetLayout> set_layout;
+  Shared<VkPipelineLayout> layout;
+  Shared<VkPipeline> handle;
   VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_GRAPHICS;
   std::string_view name;                 // of its first shader
   std::vector<Binding> bindings;         // of set 0, by all its shaders
@@ -46,7 +46,7 @@ struct Constant {
 };
 using Constants = std::vector<Constant>;
 
-/// Throws Error where the shader has no constant of a name.
+/// Throws Error where the shader has no constant of a name. A device makes each pipeline once, and keeps it.
 Pipeline make_compute_pipeline(const Device& device, const Shader& shader, const Constants& constants = {});
 
 /// A part of a vertex, read by the vertex shader's input of that name.

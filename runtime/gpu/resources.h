@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -38,6 +39,18 @@ class Owned {
   VkDevice device_ = VK_NULL_HANDLE;
   Handle handle_ = VK_NULL_HANDLE;
   Destroy destroy_ = nullptr;
+};
+
+/// The same, held by several: the last of them destroys it.
+template <typename Handle>
+class Shared {
+ public:
+  Shared() = default;
+  Shared(Owned<Handle>&& owned) : owned_(std::make_shared<const Owned<Handle>>(std::move(owned))) {}
+  operator Handle() const { return owned_ ? *owned_ : Handle{VK_NULL_HANDLE}; }  // NOLINT: as above
+
+ private:
+  std::shared_ptr<const Owned<Handle>> owned_;
 };
 
 // Members are destroyed from the last to the first: a buffer before its memory, a view before its image.
