@@ -211,6 +211,7 @@ Options checked(const Typed& typed) {
   Options options;
   options.device = typed.device;
   options.validation = typed.validation;
+  options.keep_shadow_maps = typed.keep_shadow_maps;
   if (typed.list_devices) {
     options.mode = Mode::list_devices;
     return options;
@@ -273,6 +274,7 @@ RenderSettings render_settings(const Options& options, const Recipe& recipe, con
   settings.headlight = options.headlight.value_or(0.0f);
   settings.exposure_ev = options.exposure_ev;
   settings.visibility = visibility;
+  settings.keep_shadow_maps = options.keep_shadow_maps;
   return settings;
 }
 

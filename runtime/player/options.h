@@ -42,6 +42,7 @@ struct Options {
   std::optional<uint32_t> frames;    // timed frames; in a window: close after so many
   std::string device;
   bool validation = false;
+  bool keep_shadow_maps = false;  // from frame to frame; windows always do
   float ambient = 0.0f;
   std::optional<float> headlight;  // absent: automatic_headlight() decides for the pack
   std::optional<float> exposure_ev;

@@ -22,6 +22,7 @@ struct Typed {
   bool list_devices = false;
   bool predict = false;
   bool validation = false;
+  bool keep_shadow_maps = false;
   std::vector<std::string> answers;   // one per stage; empty where not given
   std::vector<std::string> settings;  // one of recipe_settings() each; empty where not given
   std::optional<float> max_error;
