@@ -104,7 +104,8 @@ void declare_output(CLI::App& app, Typed& typed) {
       ->group("Output");
   app.add_flag("--keep-shadow-maps", typed.keep_shadow_maps,
                "Draw no shadow map again whose depths are there from the frame before, with --frames and --path; counters "
-               "are then those of what was drawn. Windows always do");
+               "are then those of what was drawn. Windows always do")
+      ->group("Output");
   app.add_flag("--predict", typed.predict, "Print what a frame will cost, without drawing it or opening a device")
       ->group("Output");
   app.add_option("--path", typed.path,

@@ -35,6 +35,15 @@ class Headless(PlayTest):
         self.assertGreater(counters["shadow_triangles"], 0)
         self.assertLessEqual(counters["shadow_draws"], counters["shadow_triangles"])
 
+    def test_shadow_maps_are_kept_where_asked(self):
+        drawn = self.stats("--frames", 2)["counters"]
+        picture = (self.folder / "s.png").read_bytes()
+        kept = self.stats("--frames", 2, "--keep-shadow-maps")["counters"]
+        self.assertEqual(drawn["shadow_maps_kept"], 0)
+        self.assertEqual(kept["shadow_maps_kept"], kept["shadow_maps"])  # of the last frame
+        self.assertEqual(kept["shadow_triangles"], 0)
+        self.assertEqual((self.folder / "s.png").read_bytes(), picture)
+
     def test_runs_repeat(self):
         first = self.stats()
         picture = (self.folder / "s.png").read_bytes()
