@@ -282,7 +282,8 @@ void Renderer::Impl::record_light(const Recording& frame, const MapGroup& group)
                    .tiles = resources.tiles,
                    .first_light = group.first_light,
                    .light_count = group.light_count,
-                   .projections = projections_of(plan.list.maps)};
+                   .projections = projections_of(plan.list.maps),
+                   .parts_of_layers = has_parts_of_layers(plan.list.maps, resources.store)};
   if (plan.recipe.deliver == Deliver::textures && plan.recipe.filter != Filter::rays) {
     const Timed timed(frame, "deliver");
     record_visibility(cmd, device, shade, plan.recipe, input, resources.store, resources.targets);

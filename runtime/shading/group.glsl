@@ -11,6 +11,7 @@
 
 // That the frame's maps have: a bit for each Projection. Answers have the numbers below.
 layout(constant_id = 100) const uint projections = 3u;
+layout(constant_id = 101) const bool parts_of_layers = false;  // a map has no whole layers
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, scalar) readonly buffer View { ViewConstants view; };

@@ -27,14 +27,17 @@ gpu::Owned<VkSampler> shadow_sampler(const gpu::Device& device, VkFilter filter,
 
 // Made when first needed: few of the combinations are ever drawn with.
 const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
-                                  const Recipe& recipe, uint32_t projections) {
+                                  const Recipe& recipe, const ShadeInput& input) {
   const auto number = [](auto answer) { return static_cast<uint32_t>(answer); };
-  const std::array<uint32_t, 6> key{number(shader),        number(recipe.filter),  number(recipe.shade),
-                                    number(recipe.lookup), number(recipe.deliver), projections};
+  const std::array<uint32_t, 7> key{number(shader),        number(recipe.filter),  number(recipe.shade),
+                                    number(recipe.lookup), number(recipe.deliver), input.projections,
+                                    input.parts_of_layers};
   const auto found = pipelines.made.find(key);
   if (found != pipelines.made.end()) return found->second;
-  const gpu::Constants filters{
-      {"filter_answer", number(recipe.filter)}, {"lookup_answer", number(recipe.lookup)}, {"projections", projections}};
+  const gpu::Constants filters{{"filter_answer", number(recipe.filter)},
+                               {"lookup_answer", number(recipe.lookup)},
+                               {"projections", input.projections},
+                               {"parts_of_layers", input.parts_of_layers}};
   gpu::Constants shades = filters;
   shades.insert(shades.end(), {{"shade_answer", number(recipe.shade)}, {"deliver_answer", number(recipe.deliver)}});
   return pipelines.made
@@ -46,7 +49,7 @@ const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pip
 void record_over_picture(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
                          const Recipe& recipe, const ShadeInput& input, const CubeArray& store,
                          const Targets& targets) {
-  const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, shader, recipe, input.projections);
+  const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, shader, recipe, input);
   // Every binding has to be something, read or not.
   const gpu::Buffer& tile_words = recipe.lookup == Lookup::tiles ? input.tiles.words : input.lights;
   const gpu::Buffer& visibility = recipe.deliver == Deliver::textures ? input.visibility : input.lights;

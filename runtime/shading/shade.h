@@ -16,7 +16,7 @@
 namespace chandelier {
 
 struct ShadePipelines {
-  std::map<std::array<uint32_t, 6>, gpu::Pipeline> made;  // by shader and the answers it is specialized for
+  std::map<std::array<uint32_t, 7>, gpu::Pipeline> made;  // by shader and the answers it is specialized for
   gpu::Owned<VkSampler> texel_sampler;                    // for targets
   gpu::Owned<VkSampler> linear_compare;                   // of depths: filters pcf and pcss
   gpu::Owned<VkSampler> nearest_depth;                    // depths as they are, for all filters
@@ -36,6 +36,7 @@ struct ShadeInput {
   uint32_t first_light;
   uint32_t light_count;
   uint32_t projections;  // of the frame's maps
+  bool parts_of_layers;  // a map of the frame has no whole layers
 };
 /// Filters the group's maps into `input.visibility`, which shading may read afterwards.
 void record_visibility(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,

@@ -15,6 +15,7 @@ from pathlib import Path
 NAME, ENTRY_POINT, EXECUTION_MODE, EXECUTION_MODE_ID = 5, 15, 16, 331
 TYPE_INT, TYPE_FLOAT, TYPE_VECTOR, TYPE_IMAGE, TYPE_SAMPLER, TYPE_SAMPLED_IMAGE = 21, 22, 23, 25, 26, 27
 TYPE_ARRAY, TYPE_STRUCT, TYPE_POINTER, CONSTANT, SPEC_CONSTANT, VARIABLE = 28, 30, 32, 43, 50, 59
+SPEC_TRUE, SPEC_FALSE = 48, 49
 VERTEX = 0  # execution model
 DECORATE, MEMBER_DECORATE = 71, 72
 # Instructions that read or write through a variable, and where their operands have it; of a call, each argument may be one.
@@ -55,6 +56,8 @@ class Module:
             self.types[args[0]] = (op, args[1:])
         elif op in (CONSTANT, SPEC_CONSTANT):
             self.constants[args[1]] = args[2]
+        elif op in (SPEC_TRUE, SPEC_FALSE):
+            self.constants[args[1]] = op == SPEC_TRUE
         elif op == VARIABLE:
             self.variables.append((args[0], args[1], args[2]))
         elif op == DECORATE:

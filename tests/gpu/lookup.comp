@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the hard filter at any point, without a picture.
+// Reads a filter at any point, without a picture.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -21,13 +21,17 @@ layout(binding = 2, scalar) readonly buffer Views { ShadowView views[]; };
 layout(binding = 3, scalar) readonly buffer Questions { Question questions[]; };
 layout(binding = 4, scalar) writeonly buffer Answers { float answers[]; };
 layout(binding = 5) uniform sampler2DArray layer_depths;
+layout(binding = 6) uniform samplerCubeArrayShadow cubes;
+layout(binding = 7) uniform sampler2DArrayShadow layers;
+layout(binding = 8) uniform samplerCubeArray cube_depths;
 
+layout(constant_id = 100) const bool parts_of_layers = false;
 const uint projections = 1u << PROJECTION_CUBE_FACE | 1u << PROJECTION_CASCADE;
-#include "shadows/filter/filter_hard.glsl"
+#include "stages/filter.glsl"
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= uint(questions.length())) return;
   Question q = questions[i];
-  answers[i] = visibility_hard(maps[q.map], Receiver(q.p, q.n, mat2x3(0.0), 0u));
+  answers[i] = visibility(maps[q.map], receiver_at(q.p, q.n));
 }

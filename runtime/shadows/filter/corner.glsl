@@ -34,30 +34,30 @@ Verdict verdict(Texels around, Sight here, Spot spot, vec2 uv, vec3 plane, bool 
 Verdict cube_verdict(CubeDisc disc, vec2 way_to_lit, float radius_m) {
   vec3 n = cross(disc.axes[0], disc.axes[1]);
   vec3 d = disc.surface;
-  Spot spot = cube_spot(disc.near_m, d, n, d);
-  Texels around = cube_texels(disc.cube, d);
+  Spot spot = cube_spot(disc.near_m, disc.square.size, d, n, d);
+  Texels around = cube_texels(disc.square, disc.cube, d);
   Sight here = sight(around, spot);
   bool shown = any(here.own);
   vec3 aside = disc.axes * (shown ? -way_to_lit : way_to_lit);
   if (shown) aside -= d * (dot(aside, d) / dot(d, d));  // across the light's way: the map knows no other step
-  float texel_m = 2.0 / view.face_size_px * largest(abs(d));
+  float texel_m = 2.0 / disc.square.size * largest(abs(d));
   vec3 at = disc.receiver + aside * (step_aside(radius_m, texel_m) * inversesqrt(max(dot(aside, aside), 1e-20)));
-  Texels there = cube_texels(disc.cube, at);
+  Texels there = cube_texels(disc.square, disc.cube, at);
   vec3 plane = from_face(at, plane_through(there));
   vec3 on_face = to_face(d, d);
-  Beside beside = with_plane(disc.beside, plane, 2.0 / view.face_size_px * dot(abs(plane), vec3(1.0)));
-  bool own_aside = any(sight(there, cube_spot(disc.near_m, d, n, at)).own);
+  Beside beside = with_plane(disc.beside, plane, 2.0 / disc.square.size * dot(abs(plane), vec3(1.0)));
+  bool own_aside = any(sight(there, cube_spot(disc.near_m, disc.square.size, d, n, at)).own);
   return verdict(around, here, spot, on_face.xy / on_face.z, to_face(d, plane), own_aside, beside);
 }
 
 Verdict cascade_verdict(CascadeDisc disc, vec2 way_to_lit, float radius_m) {
-  Texels around = texels_at(disc.uv, disc.layer);
+  Texels around = texels_at(disc.square, disc.uv, disc.layer);
   Sight here = sight(around, disc.spot);
   vec2 aside = (disc.axes * (any(here.own) ? -way_to_lit : way_to_lit)).xy;
-  float steps = step_aside(radius_m / disc.texel_m, 1.0) * 2.0 / view.face_size_px;
-  Texels there = texels_at(disc.receiver.xy + aside * (steps * inversesqrt(max(dot(aside, aside), 1e-20))), disc.layer);
+  float steps = step_aside(radius_m / disc.texel_m, 1.0) * 2.0 / disc.square.size;
+  Texels there = texels_at(disc.square, disc.receiver.xy + aside * (steps * inversesqrt(max(dot(aside, aside), 1e-20))), disc.layer);
   vec3 plane = plane_through(there);
-  float margin = 2.0 / view.face_size_px * (abs(plane.x) + abs(plane.y)) + disc.spot.texel;
+  float margin = 2.0 / disc.square.size * (abs(plane.x) + abs(plane.y)) + disc.spot.texel;
   bool own_aside = any(sight(there, disc.spot).own);
   return verdict(around, here, disc.spot, disc.uv, plane, own_aside, with_plane(disc.beside, plane, margin));
 }

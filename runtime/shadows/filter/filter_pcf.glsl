@@ -10,6 +10,42 @@
 // (README.md of runtime/shadows).
 const float PENUMBRA_PER_RADIUS = 0.27;
 
+// Where a tap lies in the layers: between the middles of its view's outermost texels.
+vec3 in_layers(Square square, vec2 uv, float layer) {
+  vec2 at = clamp((uv * 0.5 + 0.5) * square.size, 0.5, square.size - 0.5);
+  return vec3((square.corner + at) / view.face_size_px, layer);
+}
+
+vec3 in_layers(CubeDisc disc, Tap tap) {
+  vec3 on_face = to_face(tap.at, tap.at);
+  return in_layers(disc.square, on_face.xy / on_face.z, 6.0 * disc.cube + face_of(tap.at));
+}
+
+// Does a tap lie beside its cascade, where nothing casts? With whole layers the sampler's border says so.
+bool is_beside(Tap tap) { return parts_of_layers && any(greaterThan(abs(tap.at.xy - 0.5), vec2(0.5))); }
+
+// How much of the texels around a tap is no nearer to the light than what it is compared with.
+float lit(CubeDisc disc, Tap tap) {
+  if (parts_of_layers) return texture(layers, vec4(in_layers(disc, tap), tap.compared));
+  return texture(cubes, vec4(tap.at, disc.cube), tap.compared);
+}
+float lit(CascadeDisc disc, Tap tap) {
+  vec3 at = parts_of_layers ? in_layers(disc.square, tap.at.xy * 2.0 - 1.0, tap.at.z) : tap.at;
+  float part = texture(layers, vec4(at, tap.compared));
+  return is_beside(tap) ? 1.0 : part;
+}
+
+// The depth of the texel that a tap falls on.
+float depth_at(CubeDisc disc, Tap tap) {
+  if (parts_of_layers) return textureLod(layer_depths, in_layers(disc, tap), 0.0).r;
+  return textureLod(cube_depths, vec4(tap.at, disc.cube), 0.0).r;
+}
+float depth_at(CascadeDisc disc, Tap tap) {
+  vec3 at = parts_of_layers ? in_layers(disc.square, tap.at.xy * 2.0 - 1.0, tap.at.z) : tap.at;
+  float depth = textureLod(layer_depths, at, 0.0).r;
+  return is_beside(tap) ? 0.0 : depth;
+}
+
 float pcf_radius(ShadowMap map, vec3 p) {
   return max(SMOOTHING_TEXELS * texel_size(map, p), min(PENUMBRA_PER_RADIUS * map.filter_radius_m, 0.5 * length(from_center(map, p))));
 }
@@ -67,7 +103,7 @@ Lit cube_pcf(CubeDisc disc, float radius_m, uint taps) {
     do {
       for (uint k = 0u; k < 4u; ++k, ++i) {
         Tap tap = cube_tap(disc, radius_m * tap_ring(i, taps) * turn);
-        add_tap(sums, texture(cubes, vec4(tap.at, disc.cube), tap.compared), turn, 2u * i >= taps);
+        add_tap(sums, lit(disc, tap), turn, 2u * i >= taps);
         turn = NEXT_TURN * turn;
       }
     } while (i < taps);
@@ -94,7 +130,7 @@ Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m, uint taps) {
     do {
       for (uint k = 0u; k < 4u; ++k, ++i) {
         Tap tap = cascade_tap(disc, radius_m * tap_ring(i, taps) * turn);
-        add_tap(sums, texture(layers, vec4(tap.at, tap.compared)), turn, 2u * i >= taps);
+        add_tap(sums, lit(disc, tap), turn, 2u * i >= taps);
         turn = NEXT_TURN * turn;
       }
     } while (i < taps);

@@ -20,7 +20,7 @@ Blockers cube_blockers(CubeDisc disc, float search_m) {
   for (uint i = 0u; i < DISC_TAPS; ++i) {
     Tap tap = cube_tap(disc, search_m * tap_ring(i, DISC_TAPS) * turn);
     turn = NEXT_TURN * turn;
-    float blocker = textureLod(cube_depths, vec4(tap.at, disc.cube), 0.0).r;
+    float blocker = depth_at(disc, tap);
     bool blocks = blocker > tap.compared;
     count += blocks ? 1u : 0u;
     sum += blocks ? tap.depth / blocker : 0.0;
@@ -36,7 +36,7 @@ Blockers cascade_blockers(CascadeDisc disc, float search_m) {
   for (uint i = 0u; i < DISC_TAPS; ++i) {
     Tap tap = cascade_tap(disc, search_m * tap_ring(i, DISC_TAPS) * turn);
     turn = NEXT_TURN * turn;
-    float blocker = textureLod(layer_depths, tap.at, 0.0).r;
+    float blocker = depth_at(disc, tap);
     bool blocks = blocker > tap.compared;
     count += blocks ? 1u : 0u;
     sum += blocks ? blocker - tap.depth : 0.0;

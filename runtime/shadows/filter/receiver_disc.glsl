@@ -65,6 +65,7 @@ struct CubeDisc {
   vec3 receiver;  // the same, off its surface
   mat2x3 axes;    // unit vectors in the plane
   vec2 slope;     // how much farther away the plane is a metre along each axis, relative to the receiver's distance
+  Square square;
   float cube;
   float near_m;
   bool lone;  // one light shines from there: what it does not reach is not lit by another that shares the map
@@ -75,10 +76,10 @@ struct CubeDisc {
 // whole plane is moved by what the worst of them needs.
 CubeDisc cube_disc(ShadowMap map, vec3 p, vec3 n, mat2x3 axes, float radius_m) {
   vec3 d = from_center(map, p);
-  float raise_m = RAISE_TEXELS * 2.0 / view.face_size_px * (largest(abs(d)) + radius_m);
+  float raise_m = RAISE_TEXELS * 2.0 / float(map.size_px) * (largest(abs(d)) + radius_m);
   float across = along_major_axis(d, n, raise_m + 1.4142136 * radius_m);
   vec3 off = d + n * (raise_m * sqrt(max(0.0, 1.0 - across * across)));
-  return CubeDisc(d, off, axes, off * axes / dot(off, off), float(map.cube), map.near_m, map.light_count == 1u, NOTHING_BESIDE);
+  return CubeDisc(d, off, axes, off * axes / dot(off, off), square_of(map), float(map.cube), map.near_m, map.light_count == 1u, NOTHING_BESIDE);
 }
 
 // A tap of the disc: where the plane lies there and its depth.
@@ -103,6 +104,7 @@ struct CascadeDisc {
   Spot spot;
   vec3 receiver;  // clip space; off its surface
   mat2x3 axes;    // a metre along each
+  Square square;
   float layer;
   float texel_m;
   bool lone;
@@ -113,7 +115,7 @@ CascadeDisc cascade_disc(ShadowMap map, ShadowView cascade, vec3 p, vec3 n, mat2
   vec3 surface = to_cascade(cascade, vec4(p, 1.0));
   vec3 receiver = surface + to_cascade(cascade, vec4(n * (RAISE_TEXELS * cascade.texel_m), 0.0));
   mat2x3 clip_axes = mat2x3(to_cascade(cascade, vec4(axes[0], 0.0)), to_cascade(cascade, vec4(axes[1], 0.0)));
-  return CascadeDisc(surface.xy, cascade_spot(cascade, surface, n), receiver, clip_axes, float(cascade.layer),
+  return CascadeDisc(surface.xy, cascade_spot(cascade, surface, n), receiver, clip_axes, square_of(map), float(cascade.layer),
                      cascade.texel_m, map.light_count == 1u, NOTHING_BESIDE);
 }
 

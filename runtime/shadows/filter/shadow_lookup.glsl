@@ -19,6 +19,13 @@ bool is_projected(ShadowMap map, uint projection) {
 // A point as the centre of a map sees it.
 vec3 from_center(ShadowMap map, vec3 p) { return p + (view.eye_ws - map.center_ws); }
 
+// The square of its layers that a map has, in texels. Layers are view.face_size_px wide.
+struct Square {
+  vec2 corner;
+  float size;
+};
+Square square_of(ShadowMap map) { return Square(vec2(map.left_px, map.top_px), float(map.size_px)); }
+
 float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
 
 // The part of n along the axis of the cube face that d falls on; where d is within `reach` of other faces, the least part
@@ -31,7 +38,7 @@ float along_major_axis(vec3 d, vec3 n, float reach) {
 
 // Width of a texel of the map at p, metres. For a cube it grows with the distance along the face's axis.
 float texel_size(ShadowMap map, vec3 p) {
-  return 2.0 / view.face_size_px * largest(abs(from_center(map, p)));
+  return 2.0 / float(map.size_px) * largest(abs(from_center(map, p)));
 }
 
 // The first cascade that reaches as far as p.

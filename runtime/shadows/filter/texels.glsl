@@ -2,7 +2,7 @@
 // Which surfaces four neighbouring texels show. Expects in scope what shadow_lookup.glsl does, and the depths without
 // comparison: `sampler2DArray layer_depths`, a layer for each face and cascade.
 //
-// A plane is kept as a layer sees it: at (u, v), -1 to 1 across the layer, its depth is plane.x * u + plane.y * v + plane.z.
+// A plane is kept as a view sees it: at (u, v), -1 to 1 across the view, its depth is plane.x * u + plane.y * v + plane.z.
 // That is exact in a cascade and, as depth is near / distance along the axis, on the face of a cube.
 #ifndef CHANDELIER_TEXELS_GLSL
 #define CHANDELIER_TEXELS_GLSL
@@ -12,24 +12,25 @@
 struct Texels {
   vec4 depth;
   vec2 middle;  // u and v of that place
+  float size;   // of the view, texels
 };
 const vec4 RIGHT = vec4(-1.0, 1.0, 1.0, -1.0), DOWN = vec4(1.0, 1.0, -1.0, -1.0);  // half texels from the middle
 
-// The four whose centres surround uv; beside the layer's border the nearest four within.
-Texels texels_at(vec2 uv, float layer) {
-  float size = view.face_size_px;
-  vec2 at = clamp(floor((uv * 0.5 + 0.5) * size + 0.5), 1.0, size - 1.0) / size;
-  return Texels(textureGather(layer_depths, vec3(at, layer)), at * 2.0 - 1.0);
+// The four whose centres surround uv; beside the view's border the nearest four within.
+Texels texels_at(Square square, vec2 uv, float layer) {
+  vec2 at = clamp(floor((uv * 0.5 + 0.5) * square.size + 0.5), 1.0, square.size - 1.0);
+  vec4 depth = textureGather(layer_depths, vec3((square.corner + at) / view.face_size_px, layer));
+  return Texels(depth, at / square.size * 2.0 - 1.0, square.size);
 }
 
 // A plane's depth at the centres of four texels.
-vec4 plane_at(vec3 plane, vec2 middle) {
-  return dot(plane, vec3(middle, 1.0)) + (plane.x * RIGHT + plane.y * DOWN) / view.face_size_px;
+vec4 plane_at(vec3 plane, Texels t) {
+  return dot(plane, vec3(t.middle, 1.0)) + (plane.x * RIGHT + plane.y * DOWN) / t.size;
 }
 
 // The plane that four texels lie on, or come nearest to.
 vec3 plane_through(Texels t) {
-  vec2 slope = vec2(dot(t.depth, RIGHT), dot(t.depth, DOWN)) * (0.25 * view.face_size_px);
+  vec2 slope = vec2(dot(t.depth, RIGHT), dot(t.depth, DOWN)) * (0.25 * t.size);
   return vec3(slope, dot(t.depth, vec4(0.25)) - dot(slope, t.middle));
 }
 
@@ -55,8 +56,8 @@ struct Sight {
 };
 
 Sight sight(Texels t, Spot spot) {
-  vec4 plane = plane_at(spot.plane, t.middle);
-  float step = 2.0 / view.face_size_px * (abs(spot.plane.x) + abs(spot.plane.y)) + spot.texel;
+  vec4 plane = plane_at(spot.plane, t);
+  float step = 2.0 / t.size * (abs(spot.plane.x) + abs(spot.plane.y)) + spot.texel;
   float error = OWN_TEXELS * step + spot.rounding;
   bvec4 own = lessThanEqual(abs(t.depth - plane), vec4(spot.faces ? error : -1.0));
   bvec4 before = greaterThan(t.depth, max(plane + (spot.faces ? error : -error), vec4(spot.depth + spot.rounding)));
@@ -74,7 +75,7 @@ bool has_before_it(vec3 plane, Spot spot, vec2 uv) {
 
 // Do the texels show a spot's surface where they do not show that other plane? Where both meet, a texel may look like either.
 bool shows_it_alone(Texels t, Sight s, Spot spot, vec3 plane) {
-  bvec4 apart = greaterThan(abs(t.depth - plane_at(plane, t.middle)), vec4(OWN_TEXELS * spot.texel));
+  bvec4 apart = greaterThan(abs(t.depth - plane_at(plane, t)), vec4(OWN_TEXELS * spot.texel));
   return any(bvec4(uvec4(s.own) & uvec4(apart)));
 }
 
@@ -102,18 +103,18 @@ float face_of(vec3 at) {
 }
 
 // The four texels of a cube on the way to `at`, from its centre.
-Texels cube_texels(float cube, vec3 at) {
+Texels cube_texels(Square square, float cube, vec3 at) {
   vec3 on_face = to_face(at, at);
-  return texels_at(on_face.xy / on_face.z, 6.0 * cube + face_of(at));
+  return texels_at(square, on_face.xy / on_face.z, 6.0 * cube + face_of(at));
 }
 
 // The surface through d across n, where d is from the cube's centre, as the face sees it that `at` falls on. It is tilted by
 // the least bit towards the centre, since a plane that is seen edge on has no depth.
-Spot cube_spot(float near_m, vec3 d, vec3 n, vec3 at) {
+Spot cube_spot(float near_m, float size, vec3 d, vec3 n, vec3 at) {
   float depth = near_m / largest(abs(d));
   vec3 tilted = n - d * (1e-4 / largest(abs(d)));
   float facing = dot(tilted, d);
-  return Spot(to_face(at, tilted) * (near_m / facing), depth, 2.0 / view.face_size_px * depth, DEPTH_ROUNDING * depth,
+  return Spot(to_face(at, tilted) * (near_m / facing), depth, 2.0 / size * depth, DEPTH_ROUNDING * depth,
               facing < 0.0);
 }
 

@@ -15,11 +15,6 @@
 namespace chandelier {
 namespace {
 
-bool has_parts_of_layers(const CasterInput& input) {
-  return std::ranges::any_of(input.maps,
-                             [&](const frame::ShadowMap& map) { return map.size_px != input.store.layer_size_px; });
-}
-
 // The squares of the maps that are drawn.
 void clear_maps(gpu::Commands cmd, const CasterInput& input) {
   std::vector<VkClearRect> squares;
@@ -114,7 +109,7 @@ void record_casters(gpu::Commands cmd, const CasterPipelines& pipelines, const G
                     const CasterInput& input, uint32_t pass) {
   if (pass > 0) gpu::image_barrier(cmd, input.store.depth, use::depth_attachment, use::depth_attachment);
   begin_pass(cmd, input, pass == 0);
-  const bool placed = has_parts_of_layers(input);
+  const bool placed = has_parts_of_layers(input.maps, input.store);
   const gpu::Pipeline& opaque = placed ? pipelines.opaque_placed : pipelines.opaque;
   const gpu::Pipeline& masked = placed ? pipelines.masked_placed : pipelines.masked;
   const gpu::Pipeline* bound = nullptr;

@@ -31,6 +31,10 @@ CubeArray make_cube_array(const gpu::Device& device, uint32_t layer_size_px, uin
   return store;
 }
 
+bool has_parts_of_layers(std::span<const frame::ShadowMap> maps, const CubeArray& store) {
+  return std::ranges::any_of(maps, [&](const frame::ShadowMap& map) { return map.size_px != store.layer_size_px; });
+}
+
 void make_room(const gpu::Device& device, const Recipe& recipe, uint32_t cubes, gpu::Retired& retired,
                CubeArray& store) {
   const uint32_t size_px = recipe.face_size_px;

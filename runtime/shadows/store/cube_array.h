@@ -25,6 +25,9 @@ uint32_t cubes_within(const gpu::Device& device, uint32_t face_size_px, uint64_t
 
 CubeArray make_cube_array(const gpu::Device& device, uint32_t layer_size_px, uint32_t cube_count);
 
+/// Is any of the maps smaller than the layers?
+bool has_parts_of_layers(std::span<const frame::ShadowMap> maps, const CubeArray& store);
+
 /// Keeps a pool that has `cubes` cubes of the recipe's size, and retires one that has not.
 void make_room(const gpu::Device& device, const Recipe& recipe, uint32_t cubes, gpu::Retired& retired,
                CubeArray& store);
