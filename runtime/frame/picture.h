@@ -12,7 +12,7 @@ namespace chandelier {
 struct Picture {
   uint32_t width = 0;
   uint32_t height = 0;
-  std::vector<float> radiance;  // linear RGBA, before exposure and tone map
+  std::vector<float> radiance;  // linear, before exposure and tone map; alpha: shading/occlusion.h
   std::vector<uint8_t> shown;   // sRGB RGBA, as on a screen
 };
 

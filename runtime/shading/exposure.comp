@@ -5,6 +5,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
+#include "shading/occlusion.glsl"
 
 layout(constant_id = 0) const uint pass = 0u;
 layout(local_size_x = 256) in;
@@ -21,7 +22,7 @@ vec2 of_pixel(uvec2 group, uint thread) {
   ivec2 pixel = ivec2(group) * 16 + ivec2(thread % 16u, thread / 16u);
   if (any(greaterThanEqual(pixel, imageSize(radiance_image)))) return vec2(0.0);
   vec4 radiance = imageLoad(radiance_image, pixel);
-  if (radiance.a == 0.0) return vec2(0.0);  // unlit: not radiance
+  if (is_unlit(radiance.a)) return vec2(0.0);  // not radiance
   float luminance = dot(radiance.rgb, vec3(0.2126, 0.7152, 0.0722));
   return luminance > DARKEST && luminance < 1e30 ? vec2(sqrt(luminance), 1.0) : vec2(0.0);
 }

@@ -5,6 +5,7 @@
 
 #include "shaders/g_buffer_frag.h"
 #include "shaders/g_buffer_vert.h"
+#include "shading/occlusion.h"
 
 namespace chandelier {
 namespace {
@@ -20,7 +21,7 @@ void begin_pass(gpu::Commands cmd, const Targets& targets) {
   };
   VkRenderingAttachmentInfo colors[]{attachment(targets.surface, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL),
                                      attachment(targets.radiance, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)};
-  colors[1].clearValue.color.float32[3] = 1.0f;
+  colors[1].clearValue.color.float32[3] = alpha_of_occlusion(1.0f);
   const auto depth = attachment(targets.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
   const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                              .renderArea = {{0, 0}, {targets.width, targets.height}},

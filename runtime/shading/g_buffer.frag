@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The g-buffer's surfaces, and the radiance that no shadow takes away: emission, ambient, and a headlight, which shines
-// from the eye on all that is seen and is as bright at any distance; with alpha 1. Alpha 0 says that the colour is what the screen shall show (KHR_materials_unlit): neither light nor exposure changes it.
+// from the eye on all that is seen and is as bright at any distance. Its alpha keeps the material's occlusion for later passes, or
+// says that the colour is what the screen shall show (KHR_materials_unlit): neither light nor exposure changes it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
 #include "pack_schema.glsl"
 #include "shading/material.glsl"
+#include "shading/occlusion.glsl"
 #include "shading/surface.glsl"
 
 layout(binding = 0, scalar) readonly buffer Views { ViewConstants view; };
@@ -55,5 +57,6 @@ void main() {
   surface_bits = pack_surface(Surface(bent, facet, base.rgb, metal_rough.x, metal_rough.y));
   float facing = max(-dot(bent, normalize(position_from_eye)), 0.0);
   float reflected = view.ambient * occlusion + view.headlight * facing;
-  radiance = m.unlit != 0u ? vec4(base.rgb, 0.0) : vec4(emissive + reflected * base.rgb, 1.0);
+  radiance = m.unlit != 0u ? vec4(base.rgb, UNLIT_ALPHA)
+                           : vec4(emissive + reflected * base.rgb, alpha_of_occlusion(occlusion));
 }

@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shading/group.glsl"
+#include "shading/occlusion.glsl"
 
 // KHR_lights_punctual, spot lights.
 float cone_falloff(FrameLight light, vec3 to_light) {
@@ -65,8 +66,7 @@ void main() {
   if (any(greaterThanEqual(vec2(pixel), view.size_px))) return;
   float depth = texelFetch(depth_image, pixel, 0).r;
   vec4 radiance = imageLoad(radiance_image, pixel);
-  bool unlit = radiance.a == 0.0;
-  if (depth == 0.0 || unlit || group.first_light == group.light_end) return;
+  if (depth == 0.0 || is_unlit(radiance.a) || group.first_light == group.light_end) return;
   Surface s = unpack_surface(texelFetch(surface_image, pixel, 0));
   vec3 p = eye_position(view, vec2(pixel) + 0.5, depth);
   imageStore(radiance_image, pixel, vec4(radiance.rgb + lit_by_group(s, p, uvec2(pixel)), radiance.a));

@@ -9,7 +9,7 @@ namespace chandelier {
 struct Targets {
   gpu::Image surface;   // shading/surface.glsl
   gpu::Image depth;     // reversed: 0 is the background
-  gpu::Image radiance;  // linear
+  gpu::Image radiance;  // linear; alpha: shading/occlusion.h
   gpu::Image shown;     // sRGB values
   uint32_t width = 0;
   uint32_t height = 0;

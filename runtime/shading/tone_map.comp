@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear radiance to what a screen shows: exposure, a filmic curve, sRGB; unlit colours (alpha 0) by sRGB alone.
+// Linear radiance to what a screen shows: exposure, a filmic curve, sRGB; unlit colours by sRGB alone.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
+#include "shading/occlusion.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0, rgba32f) uniform readonly image2D radiance_image;
@@ -20,6 +21,6 @@ void main() {
   if (any(greaterThanEqual(pixel, imageSize(shown_image)))) return;
   vec4 radiance = imageLoad(radiance_image, pixel);
   vec3 exposed = min(radiance.rgb * exp2(sums[0].exposure_ev), vec3(1e4));  // white long before
-  vec3 shown = radiance.a == 0.0 ? clamp(radiance.rgb, 0.0, 1.0) : filmic(exposed);
+  vec3 shown = is_unlit(radiance.a) ? clamp(radiance.rgb, 0.0, 1.0) : filmic(exposed);
   imageStore(shown_image, pixel, vec4(srgb(shown), 1.0));
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "gpu_test.h"
+#include "shading/occlusion.h"
 
 namespace chandelier::test {
 namespace {
@@ -210,6 +211,40 @@ TEST_F(TexturesTest, UnlitIsShownAsItIsAndStillCastsAShadow) {
   const Picture picture = draw(device(), scene, settings_for(look({0, 2, 6}, {0, 0, 0}, 0.6f), 64, 48, Recipe()));
   EXPECT_LT(radiance_at(picture, 32, 24).r, 0.01f);  // under the sheet
   EXPECT_GT(radiance_at(picture, 4, 24).r, 0.1f);    // beside it
+}
+
+// Four texels of occlusion, a square of none, an unlit one, and background: all stay apart from the light that is
+// added.
+TEST_F(TexturesTest, KeepOcclusionApartFromLight) {
+  constexpr float strength = 0.75f;
+  const std::array<uint32_t, 4> texels = {0xFF000000u, 0xFF000055u, 0xFF0000AAu, 0xFF0000FFu};
+  Scene scene;
+  scene.lights.push_back(directional_light({0, 0, -1}, 3.0f));
+  pack::Material occluded = plain_material(glm::vec3(0.5f));
+  occluded.occlusion_texture = scene.add_texture(2, 2, {texels.begin(), texels.end()});
+  occluded.occlusion_strength = strength;
+  pack::Material flat = plain_material(glm::vec3(0.5f));
+  flat.unlit = 1;
+  scene.add(quad({-1, 1, 0}, {1, 0, 0}, {0, 1, 0}), scene.add_material(occluded));
+  scene.add(quad({1, 1, 0}, {1, 0, 0}, {0, 1, 0}), scene.add_material(plain_material(glm::vec3(0.5f))));
+  scene.add(quad({-1, -1, 0}, {1, 0, 0}, {0, 1, 0}), scene.add_material(flat));
+  Recipe recipe;
+  recipe.shade = Shade::lambert;
+  RenderSettings settings = settings_for(look({0, 0, 4}, {0, 0, 0}, 2 * std::atan(0.5f)), size_px, size_px, recipe);
+  settings.ambient = 0.25f;
+  const Picture picture = draw(device(), scene, settings);
+  const auto alpha = [&](uint32_t x, uint32_t y) { return picture.radiance[4 * (size_px * y + x) + 3]; };
+  const float lit_only = at_uv(picture, 0.75f, 0.25f).r - 0.25f * 0.5f;
+  for (uint32_t i = 0; i < 4; ++i) {
+    const uint32_t x = 4 + 8 * (i % 2), y = 4 + 8 * (i / 2);
+    const float expected = 1.0f + strength * (static_cast<float>(texels[i] & 255u) / 255.0f - 1.0f);
+    EXPECT_FALSE(is_unlit(alpha(x, y)));
+    EXPECT_NEAR(occlusion_of_alpha(alpha(x, y)), expected, 2e-7f) << i;
+    EXPECT_NEAR(radiance_at(picture, x, y).r, lit_only + 0.25f * 0.5f * expected, 1e-6f) << i;
+  }
+  EXPECT_EQ(alpha(24, 8), alpha_of_occlusion(1.0f));   // a material without a map
+  EXPECT_EQ(alpha(24, 24), alpha_of_occlusion(1.0f));  // background
+  EXPECT_TRUE(is_unlit(alpha(8, 24)));
 }
 
 }  // namespace
