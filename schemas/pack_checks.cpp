@@ -6,9 +6,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <iterator>
 
+#include "image_format.h"
 #include "pack_checks_animation.h"
 #include "pack_checks_bvh.h"
 #include "pack_checks_lights.h"
@@ -73,6 +75,17 @@ std::string fault(const Image& image) {
   return {};
 }
 
+std::string half_float_fault(std::span<const std::byte> texels) {
+  for (std::size_t i = 0; i + 1 < texels.size(); i += 2) {
+    std::uint16_t bits = 0;
+    std::memcpy(&bits, &texels[i], sizeof(bits));
+    if (is_half_texel(bits)) continue;
+    return ": half float " + text(std::uint64_t{i / 2}) + " is negative or not finite (" + text(std::uint64_t{bits}) +
+           ")";
+  }
+  return {};
+}
+
 std::string fault(const Light& light) {
   if (light.inner_cone_cos < light.outer_cone_cos) {
     return ".inner_cone_cos: " + text(light.inner_cone_cos) + " is below outer_cone_cos " + text(light.outer_cone_cos);
@@ -96,24 +109,15 @@ std::string first_fault(const char* section, std::span<const Record> records) {
   return {};
 }
 
-}  // namespace
-
-std::uint64_t image_bytes(const Image& image) {
-  const bool blocks = image.format != ImageFormat::rgba8_srgb && image.format != ImageFormat::rgba8_unorm;
-  const bool small_blocks = image.format == ImageFormat::bc1_srgb || image.format == ImageFormat::bc1_unorm;
-  const std::uint64_t unit_bytes = !blocks ? 4 : small_blocks ? 8 : 16;  // of a texel or a block of 4×4
-  const auto units = [&](std::uint32_t size, std::uint32_t level) {
-    const std::uint64_t texels = std::max(1u, size >> level);
-    return blocks ? (texels + 3) / 4 : texels;
-  };
-  std::uint64_t bytes = 0;
-  for (std::uint32_t level = 0; level < image.level_count; ++level) {
-    bytes += unit_bytes * units(image.width, level) * units(image.height, level);
+std::string half_float_fault(const View& view) {
+  for (std::size_t i = 0; i < view.images.size(); ++i) {
+    const Image& image = view.images[i];
+    if (image.format != ImageFormat::rgba16_sfloat) continue;
+    if (std::string line = half_float_fault(view.image_data.subspan(image.first_byte, image.size_bytes)); !line.empty())
+      return at("images", i) + line;
   }
-  return bytes;
+  return {};
 }
-
-namespace {
 
 // What BatchInstance promises: runs of one material are as long as can be, and the opaque ones come first.
 std::string order_fault(const View& view) {
@@ -159,6 +163,7 @@ std::string check(const View& view, std::size_t most_threads) {
       [&] { return first_fault("batch_instances", view.batch_instances); },
       [&] { return order_fault(view); },
       [&] { return first_fault("images", view.images); },
+      [&] { return half_float_fault(view); },
       [&] { return first_fault("lights", view.lights); },
       [&] { return light_fault(view); },
       [&] { return animation_fault(view); },

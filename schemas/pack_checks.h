@@ -17,7 +17,4 @@ namespace chandelier::pack {
 /// name are not looked at.
 [[nodiscard]] std::string light_fault(const Light& light);
 
-/// Bytes of all levels of an image with valid fields: `image.size_bytes` must be this.
-std::uint64_t image_bytes(const Image& image);
-
 }  // namespace chandelier::pack

@@ -14,7 +14,7 @@
 #include "decode.h"
 #include "decode_scene.h"
 #include "image_cache.h"
-#include "pack_checks.h"
+#include "image_format.h"
 
 namespace chandelier::baker {
 namespace {

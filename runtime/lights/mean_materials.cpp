@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 #include <numbers>
+
+#include "image_format.h"
 
 namespace chandelier {
 namespace {
@@ -14,9 +17,8 @@ float linear_from_srgb(float x) {
   return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
 }
 
-bool is_srgb(pack::ImageFormat format) {
-  return format == pack::ImageFormat::rgba8_srgb || format == pack::ImageFormat::bc1_srgb ||
-         format == pack::ImageFormat::bc3_srgb;
+float half_at(const uint8_t* bytes) {
+  return glm::unpackHalf1x16(static_cast<uint16_t>(bytes[0] | bytes[1] << 8));
 }
 
 glm::vec3 from_565(uint32_t bits) {
@@ -34,29 +36,54 @@ glm::vec3 block_texel(const uint8_t* block, uint32_t texel, bool four_colors) {
   return choice == 2 ? (a + b) / 2.0f : glm::vec3(0.0f);
 }
 
+// One channel of a BC5 block: two ends, and eight or six values from one to the other.
+float channel_texel(const uint8_t* block, uint32_t texel) {
+  uint64_t choices = 0;
+  for (uint32_t i = 0; i < 6; ++i) choices |= uint64_t{block[2 + i]} << 8 * i;
+  const auto choice = static_cast<uint32_t>(choices >> 3 * texel & 7u);
+  const float a = static_cast<float>(block[0]) / 255.0f, b = static_cast<float>(block[1]) / 255.0f;
+  if (choice < 2) return choice == 0 ? a : b;
+  const uint32_t steps = block[0] > block[1] ? 7 : 5;
+  if (choice > steps) return choice == 6 ? 0.0f : 1.0f;
+  return glm::mix(a, b, static_cast<float>(choice - 1) / static_cast<float>(steps));
+}
+
+// The colour of a texel as it is stored; `i`: of the level's texels, row by row.
+glm::vec3 stored_texel(pack::ImageFormat format, const pack::ImageLevel& level, const uint8_t* bytes, uint32_t i) {
+  const pack::TexelBlock block = pack::block_of(format);
+  const uint32_t x = i % level.width, y = i / level.width;
+  const uint8_t* const at =
+      bytes + size_t{block.bytes} * (y / block.side_texels * level.blocks_wide + x / block.side_texels);
+  switch (format) {
+    case pack::ImageFormat::rgba8_srgb:
+    case pack::ImageFormat::rgba8_unorm:
+      return glm::vec3(at[0], at[1], at[2]) / 255.0f;
+    case pack::ImageFormat::rgba16_sfloat:
+      return {half_at(at), half_at(at + 2), half_at(at + 4)};
+    case pack::ImageFormat::bc1_srgb:
+    case pack::ImageFormat::bc1_unorm:
+      return block_texel(at, 4 * (y % 4) + x % 4, false);
+    case pack::ImageFormat::bc3_srgb:
+      return block_texel(at + 8, 4 * (y % 4) + x % 4, true);
+    case pack::ImageFormat::bc5_unorm:
+      return {channel_texel(at, 4 * (y % 4) + x % 4), channel_texel(at + 8, 4 * (y % 4) + x % 4), 0.0f};
+  }
+  pack::refuse_format(format);
+}
+
 // Linear colour of the smallest level.
 glm::vec3 mean_texel(const pack::View& pack, const pack::Image& image) {
-  const uint32_t width = std::max(1u, image.width >> (image.level_count - 1));
-  const uint32_t height = std::max(1u, image.height >> (image.level_count - 1));
-  const bool raw = image.format == pack::ImageFormat::rgba8_srgb || image.format == pack::ImageFormat::rgba8_unorm;
-  const bool bc3 = image.format == pack::ImageFormat::bc3_srgb;
-  const uint32_t blocks_wide = (width + 3) / 4;
-  const uint32_t block_bytes = bc3 ? 16 : 8;
-  const uint64_t level_bytes =
-      raw ? uint64_t{4} * width * height : uint64_t{block_bytes} * blocks_wide * ((height + 3) / 4);
-  const auto* level =
-      reinterpret_cast<const uint8_t*>(pack.image_data.data()) + image.first_byte + image.size_bytes - level_bytes;
+  const pack::ImageLevel level = pack::level_of(image, image.level_count - 1);
+  const auto* bytes =
+      reinterpret_cast<const uint8_t*>(pack.image_data.data()) + image.first_byte + image.size_bytes - level.bytes;
   glm::vec3 sum(0.0f);
-  for (uint32_t i = 0; i < width * height; ++i) {
-    const uint32_t x = i % width, y = i / width;
-    const uint8_t* block = level + block_bytes * (y / 4 * blocks_wide + x / 4) + (bc3 ? 8 : 0);
-    glm::vec3 texel = raw ? glm::vec3(level[4 * i], level[4 * i + 1], level[4 * i + 2]) / 255.0f
-                          : block_texel(block, 4 * (y % 4) + x % 4, bc3);
-    if (is_srgb(image.format))
+  for (uint32_t i = 0; i < level.width * level.height; ++i) {
+    glm::vec3 texel = stored_texel(image.format, level, bytes, i);
+    if (pack::is_srgb(image.format))
       texel = {linear_from_srgb(texel.x), linear_from_srgb(texel.y), linear_from_srgb(texel.z)};
     sum += texel;
   }
-  return sum / static_cast<float>(width * height);
+  return sum / static_cast<float>(level.width * level.height);
 }
 
 }  // namespace
@@ -68,7 +95,8 @@ std::vector<MeanMaterial> mean_materials(const pack::View& pack) {
   std::vector<MeanMaterial> means;
   for (const pack::Material& m : pack.materials) {
     const glm::vec3 metal_rough = mean(m.metallic_roughness_texture);
-    means.push_back({.base_color = glm::vec3(m.base_color_factor) * mean(m.base_color_texture),
+    const glm::vec3 base = glm::vec3(m.base_color_factor) * mean(m.base_color_texture);
+    means.push_back({.base_color = m.unlit ? base : glm::min(base, 1.0f),  // as shading/g_buffer.frag has it
                      .emissive = m.emissive * mean(m.emissive_texture),
                      .metallic = m.metallic_factor * metal_rough.b,
                      .roughness = m.roughness_factor * metal_rough.g,

@@ -6,47 +6,41 @@
 #include <algorithm>
 #include <array>
 
+#include "image_format.h"
 #include "shaders/g_buffer_frag.h"
 
 namespace chandelier {
 namespace {
 
-struct Format {
-  VkFormat format;
-  uint32_t block_size;   // texels a side
-  uint32_t block_bytes;  // of a block, or of a texel
-};
-
-Format format_of(const pack::Image& image) {
-  switch (image.format) {
+VkFormat format_of(pack::ImageFormat format) {
+  switch (format) {
     case pack::ImageFormat::rgba8_srgb:
-      return {VK_FORMAT_R8G8B8A8_SRGB, 1, 4};
+      return VK_FORMAT_R8G8B8A8_SRGB;
+    case pack::ImageFormat::rgba8_unorm:
+      return VK_FORMAT_R8G8B8A8_UNORM;
     case pack::ImageFormat::bc1_srgb:
-      return {VK_FORMAT_BC1_RGB_SRGB_BLOCK, 4, 8};
+      return VK_FORMAT_BC1_RGB_SRGB_BLOCK;
     case pack::ImageFormat::bc1_unorm:
-      return {VK_FORMAT_BC1_RGB_UNORM_BLOCK, 4, 8};
+      return VK_FORMAT_BC1_RGB_UNORM_BLOCK;
     case pack::ImageFormat::bc3_srgb:
-      return {VK_FORMAT_BC3_SRGB_BLOCK, 4, 16};
+      return VK_FORMAT_BC3_SRGB_BLOCK;
     case pack::ImageFormat::bc5_unorm:
-      return {VK_FORMAT_BC5_UNORM_BLOCK, 4, 16};
-    default:
-      return {VK_FORMAT_R8G8B8A8_UNORM, 1, 4};
+      return VK_FORMAT_BC5_UNORM_BLOCK;
+    case pack::ImageFormat::rgba16_sfloat:
+      return VK_FORMAT_R16G16B16A16_SFLOAT;  // every Vulkan device samples it, linearly too
   }
+  pack::refuse_format(format);
 }
 
-std::vector<VkBufferImageCopy> copies_of_levels(const pack::Image& info, const Format& format) {
+std::vector<VkBufferImageCopy> copies_of_levels(const pack::Image& info) {
   std::vector<VkBufferImageCopy> copies;
   VkDeviceSize offset = 0;
-  for (uint32_t level = 0; level < info.level_count; ++level) {
-    const uint32_t width = std::max(1u, info.width >> level);
-    const uint32_t height = std::max(1u, info.height >> level);
+  for (uint32_t i = 0; i < info.level_count; ++i) {
+    const pack::ImageLevel level = pack::level_of(info, i);
     copies.push_back({.bufferOffset = offset,
-                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1},
-                      .imageExtent = {width, height, 1}});
-    const auto blocks = [&](uint32_t texels) {
-      return VkDeviceSize{(texels + format.block_size - 1) / format.block_size};
-    };
-    offset += format.block_bytes * blocks(width) * blocks(height);
+                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, i, 0, 1},
+                      .imageExtent = {level.width, level.height, 1}});
+    offset += level.bytes;
   }
   return copies;
 }
@@ -56,15 +50,14 @@ gpu::Image upload_image(const gpu::Device& device, gpu::Uploader& uploader, cons
   if (std::max(info.width, info.height) > device.limits.maxImageDimension2D)
     throw gpu::Error("an image of " + std::to_string(info.width) + " x " + std::to_string(info.height) +
                      " texels is too large for this device");
-  const Format format = format_of(info);
-  if (format.block_size > 1 && !device.samples_bc)
+  if (pack::block_of(info.format).side_texels > 1 && !device.samples_bc)
     throw gpu::Error("this device has no BC textures: bake with --textures raw");
-  gpu::Image image = gpu::make_image(device, {.format = format.format,
+  gpu::Image image = gpu::make_image(device, {.format = format_of(info.format),
                                               .width = info.width,
                                               .height = info.height,
                                               .levels = info.level_count,
                                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-  uploader.image(image, texels, copies_of_levels(info, format));
+  uploader.image(image, texels, copies_of_levels(info));
   return image;
 }
 

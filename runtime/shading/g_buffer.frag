@@ -50,7 +50,7 @@ void main() {
   if (m.emissive_texture != NONE) emissive *= texture(emissive_map, uv[4]).rgb;
   float occlusion = 1.0;
   if (m.occlusion_texture != NONE)
-    occlusion += m.occlusion_strength * (texture(occlusion_map, uv[3]).r - 1.0);
+    occlusion += m.occlusion_strength * (min(texture(occlusion_map, uv[3]).r, 1.0) - 1.0);
 
   // Last: derivatives are undefined beside a pixel that has ended.
   if (m.alpha_mode == ALPHA_MODE_MASK && base.a < m.alpha_cutoff) discard;
@@ -58,5 +58,5 @@ void main() {
   float facing = max(-dot(bent, normalize(position_from_eye)), 0.0);
   float reflected = view.ambient * occlusion + view.headlight * facing;
   radiance = m.unlit != 0u ? vec4(base.rgb, UNLIT_ALPHA)
-                           : vec4(emissive + reflected * base.rgb, alpha_of_occlusion(occlusion));
+                           : vec4(emissive + reflected * min(base.rgb, 1.0), alpha_of_occlusion(occlusion));
 }

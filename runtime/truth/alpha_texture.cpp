@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+#include "image_format.h"
 
 namespace chandelier::truth {
 namespace {
@@ -40,16 +44,11 @@ std::vector<uint8_t> alpha_of_bc3(const pack::Image& image, std::span<const std:
   return alpha;
 }
 
-std::vector<uint8_t> alpha_of(const pack::Image& image, std::span<const std::byte> bytes) {
-  switch (image.format) {
-    case pack::ImageFormat::rgba8_srgb:
-    case pack::ImageFormat::rgba8_unorm:
-      return alpha_of_rgba8(image, bytes);
-    case pack::ImageFormat::bc3_srgb:
-      return alpha_of_bc3(image, bytes);
-    default:
-      return {};
-  }
+// Half floats, as bits.
+std::vector<uint16_t> alpha_of_halves(const pack::Image& image, std::span<const std::byte> texels) {
+  std::vector<uint16_t> alpha(std::size_t{image.width} * image.height);
+  for (std::size_t i = 0; i < alpha.size(); ++i) std::memcpy(&alpha[i], &texels[8 * i + 6], sizeof(uint16_t));
+  return alpha;
 }
 
 // Reduced to a few periods around 0..1, so that a texel's number fits its type.
@@ -74,17 +73,33 @@ AlphaTexture::AlphaTexture(const pack::View& pack, const pack::Texture& texture)
       wrap_v_(texture.wrap_v),
       linear_(texture.mag_filter == pack::Filter::linear) {
   const pack::Image& image = pack.images[texture.image];
-  alpha_ = alpha_of(image, pack.image_data.subspan(image.first_byte, image.size_bytes));
+  const auto bytes = pack.image_data.subspan(image.first_byte, image.size_bytes);
+  switch (image.format) {
+    case pack::ImageFormat::rgba8_srgb:
+    case pack::ImageFormat::rgba8_unorm:
+      alpha_ = alpha_of_rgba8(image, bytes);
+      return;
+    case pack::ImageFormat::rgba16_sfloat:
+      half_alpha_ = alpha_of_halves(image, bytes);
+      return;
+    case pack::ImageFormat::bc3_srgb:
+      alpha_ = alpha_of_bc3(image, bytes);
+      return;
+    case pack::ImageFormat::bc1_srgb:
+    case pack::ImageFormat::bc1_unorm:
+    case pack::ImageFormat::bc5_unorm:
+      return;  // without alpha
+  }
+  pack::refuse_format(image.format);
 }
 
 float AlphaTexture::texel(int64_t x, int64_t y) const {
-  return static_cast<float>(
-             alpha_[static_cast<std::size_t>(wrapped(y, height_, wrap_v_) * width_ + wrapped(x, width_, wrap_u_))]) /
-         255.0f;
+  const auto i = static_cast<std::size_t>(wrapped(y, height_, wrap_v_) * width_ + wrapped(x, width_, wrap_u_));
+  return alpha_.empty() ? glm::unpackHalf1x16(half_alpha_[i]) : static_cast<float>(alpha_[i]) / 255.0f;
 }
 
 float AlphaTexture::at(const glm::vec2& uv) const {
-  if (alpha_.empty()) return 1.0f;
+  if (alpha_.empty() && half_alpha_.empty()) return 1.0f;
   const float x = near_origin(uv.x, wrap_u_) * static_cast<float>(width_);
   const float y = near_origin(uv.y, wrap_v_) * static_cast<float>(height_);
   if (!linear_) return texel(static_cast<int64_t>(std::floor(x)), static_cast<int64_t>(std::floor(y)));

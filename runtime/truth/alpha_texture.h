@@ -16,8 +16,8 @@ class AlphaTexture {
   /// Copies what it needs.
   AlphaTexture(const pack::View& pack, const pack::Texture& texture);
 
-  /// 0..1 at the image's coordinates (after the texture's transform), wrapped and magnified as the texture says; 1
-  /// where the format has no alpha.
+  /// 0..1, of half floats 0 or more, at the image's coordinates (after the texture's transform), wrapped and magnified
+  /// as the texture says; 1 where the format has no alpha.
   float at(const glm::vec2& uv) const;
 
  private:
@@ -28,7 +28,9 @@ class AlphaTexture {
   pack::Wrap wrap_u_;
   pack::Wrap wrap_v_;
   bool linear_;
-  std::vector<uint8_t> alpha_;  // rows from the top; empty: 1 everywhere
+  // Rows from the top. One of both is empty; where both are, alpha is 1 everywhere.
+  std::vector<uint8_t> alpha_;        // unorm
+  std::vector<uint16_t> half_alpha_;  // half floats
 };
 
 }  // namespace chandelier::truth

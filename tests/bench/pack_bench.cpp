@@ -8,6 +8,7 @@
 #include <string>
 
 #include "octahedral.h"
+#include "image_format.h"
 #include "pack_checks.h"
 #include "pack_file.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures as shaders see them: block formats, transformed coordinates, what is cut out of shadows, unlit materials.
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 
 #include "gpu_test.h"
 #include "shading/occlusion.h"
@@ -211,6 +212,79 @@ TEST_F(TexturesTest, UnlitIsShownAsItIsAndStillCastsAShadow) {
   const Picture picture = draw(device(), scene, settings_for(look({0, 2, 6}, {0, 0, 0}, 0.6f), 64, 48, Recipe()));
   EXPECT_LT(radiance_at(picture, 32, 24).r, 0.01f);  // under the sheet
   EXPECT_GT(radiance_at(picture, 4, 24).r, 0.1f);    // beside it
+}
+
+// ---- Half floats
+
+// Two by two texels of red, green, blue and alpha, then one: mean or not, it is another level.
+constexpr std::array<float, 20> half_values = {4,    0.25f, 1000, 1, 0,  0.5f, 65504, 0.25f, 0.001f, 2,
+                                               1.5f, 0.75f, 1,    1, 64, 0,    16,    8,     3,      1};
+
+uint32_t add_half_texture(Scene& scene, const UvTransform& transform = uv_identity) {
+  std::vector<uint16_t> halves;
+  for (const float value : half_values) halves.push_back(glm::packHalf1x16(value));
+  const pack::Image image{.width = 2, .height = 2, .level_count = 2, .format = pack::ImageFormat::rgba16_sfloat};
+  return scene.add_texture(image, std::as_bytes(std::span(halves)), transform);
+}
+
+// What a half float holds of `half_values`.
+glm::vec4 half_texel(size_t i) {
+  glm::vec4 texel;
+  for (size_t c = 0; c < 4; ++c)
+    texel[static_cast<int>(c)] = glm::unpackHalf1x16(glm::packHalf1x16(half_values[4 * i + c]));
+  return texel;
+}
+
+TEST_F(TexturesTest, UnlitHalfFloatsAreShownBeyondOne) {
+  Scene scene;
+  const Picture picture = draw_square(scene, unlit(add_half_texture(scene)));
+  for (size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(at_uv(picture, i % 2 ? 0.75f : 0.25f, i / 2 ? 0.75f : 0.25f), glm::vec3(half_texel(i))) << i;
+  Scene minified;
+  const UvTransform many = {glm::vec3(2.0f * size_px, 0, 0), glm::vec3(0, 2.0f * size_px, 0)};
+  EXPECT_EQ(at_uv(draw_square(minified, unlit(add_half_texture(minified, many))), 0.5f, 0.5f),
+            glm::vec3(half_texel(4)));
+}
+
+TEST_F(TexturesTest, HalfFloatsAreFilteredLinearly) {
+  Scene scene;
+  const pack::Material material = unlit(add_half_texture(scene));
+  scene.filter_textures();
+  const Picture picture = draw_square(scene, material);
+  // A pixel's middle is 1/64 from the middle between texels, of which each is half a picture wide.
+  const float right = 0.5f + 1.0f / 32;
+  const glm::vec3 expected = glm::mix(glm::vec3(half_texel(0)), glm::vec3(half_texel(1)), right);
+  const glm::vec3 found = at_uv(picture, 0.5f, 0.1f);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1.0f, 0.01f) << c;
+}
+
+// Radiance is emission, as bright as it is, and what a base colour of at most 1 reflects.
+TEST_F(TexturesTest, HalfFloatsGlowAndReflect) {
+  const glm::vec3 factor(2.0f, 1.0f, 0.5f);
+  Scene scene;
+  pack::Material material = plain_material(glm::vec3(1.0f));
+  material.base_color_texture = material.emissive_texture = add_half_texture(scene);
+  material.emissive = factor;
+  scene.add(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), scene.add_material(material));
+  RenderSettings settings = settings_for(look({0, 0, 2}, {0, 0, 0}, 2 * std::atan(0.5f)), size_px, size_px, Recipe());
+  settings.ambient = 0.25f;
+  const Picture picture = draw(device(), scene, settings);
+  for (size_t i = 0; i < 4; ++i) {
+    const glm::vec3 texel(half_texel(i));
+    const glm::vec3 expected = factor * texel + 0.25f * glm::min(texel, 1.0f);
+    const glm::vec3 found = at_uv(picture, i % 2 ? 0.75f : 0.25f, i / 2 ? 0.75f : 0.25f);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 1e-6f * expected[c]) << i << ", " << c;
+  }
+}
+
+TEST_F(TexturesTest, HalfFloatsAreCutByTheirAlpha) {
+  Scene scene;
+  pack::Material material = unlit(add_half_texture(scene));
+  material.alpha_mode = pack::AlphaMode::mask;
+  const Picture picture = draw_square(scene, material);
+  EXPECT_EQ(at_uv(picture, 0.25f, 0.25f), glm::vec3(half_texel(0)));
+  EXPECT_EQ(at_uv(picture, 0.75f, 0.25f), glm::vec3(0.0f));  // alpha 0.25
+  EXPECT_EQ(at_uv(picture, 0.25f, 0.75f), glm::vec3(half_texel(2)));
 }
 
 // Four texels of occlusion, a square of none, an unlit one, and background: all stay apart from the light that is

@@ -121,9 +121,25 @@ TEST(AlphaTexture, DecodesBc3) {
     }
 }
 
+TEST(AlphaTexture, ReadsHalfFloats) {
+  const std::array<uint8_t, 16> bytes{1, 2, 3, 4, 5, 6, 0x00, 0x34, 1, 2, 3, 4, 5, 6, 0x00, 0x3A};  // alpha 1/4, 3/4
+  const pack::Image image{.width = 2, .height = 1, .level_count = 1, .format = pack::ImageFormat::rgba16_sfloat};
+  const AlphaTexture texture =
+      texture_of(image, {bytes.begin(), bytes.end()}, texture_with(clamp, clamp, pack::Filter::linear));
+  EXPECT_EQ(texture.at({0.25f, 0.5f}), 0.25f);
+  EXPECT_EQ(texture.at({0.5f, 0.5f}), 0.5f);
+  EXPECT_EQ(texture.at({0.75f, 0.5f}), 0.75f);
+}
+
+TEST(AlphaTexture, RefusesAnUnknownFormat) {
+  pack::Image image{.width = 1, .height = 1, .level_count = 1, .format = pack::ImageFormat{7}};
+  EXPECT_THROW(texture_of(image, std::vector<uint8_t>(16), texture_with(clamp, clamp, pack::Filter::linear)),
+               std::invalid_argument);
+}
+
 TEST(AlphaTexture, FormatsWithoutAlphaAreOpaque) {
-  for (const auto format : {pack::ImageFormat::bc1_srgb, pack::ImageFormat::bc1_unorm})
-    EXPECT_EQ(texture_of({.width = 4, .height = 4, .level_count = 1, .format = format}, std::vector<uint8_t>(8, 0),
+  for (const auto format : {pack::ImageFormat::bc1_srgb, pack::ImageFormat::bc1_unorm, pack::ImageFormat::bc5_unorm})
+    EXPECT_EQ(texture_of({.width = 4, .height = 4, .level_count = 1, .format = format}, std::vector<uint8_t>(16, 0),
                          texture_with(repeat, repeat, pack::Filter::linear))
                   .at({0.3f, 0.7f}),
               1.0f);

@@ -97,8 +97,25 @@ TEST(MeanMaterialTest, TexturesCountByTheirMean) {
   const std::array<uint8_t, 8> block{0x00, 0xF8, 0x00, 0x00, 0b11100100, 0b11100100, 0b11100100, 0b11100100};
   material.base_color_texture = scene.add_texture(bc1, std::as_bytes(std::span(block)));
   scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
+  // BC5: red all eight values from 1 to 0 twice, green the block's first value alone; there is no blue.
+  pack::Image bc5{.width = 4, .height = 4, .level_count = 1, .format = pack::ImageFormat::bc5_unorm};
+  const std::array<uint8_t, 16> blocks{255, 0, 0x88, 0xC6, 0xFA, 0x88, 0xC6, 0xFA, 51, 51, 0, 0, 0, 0, 0, 0};
+  material.base_color_texture = scene.add_texture(bc5, std::as_bytes(std::span(blocks)));
+  scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
+  // Half floats: of the emissive colour all counts, of a lit base colour at most 1.
+  const pack::Image half{.width = 1, .height = 1, .level_count = 1, .format = pack::ImageFormat::rgba16_sfloat};
+  const std::array<uint16_t, 4> texel{0x4400, 0x3400, 0x5640, 0};  // 4, 1/4, 100, 0
+  material.base_color_texture = material.emissive_texture = scene.add_texture(half, std::as_bytes(std::span(texel)));
+  material.emissive = glm::vec3(2.0f);
+  scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
+  material.unlit = 1;
+  scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
   const auto means = mean_materials(scene.open().view());
-  ASSERT_EQ(means.size(), 2u);
+  ASSERT_EQ(means.size(), 5u);
+  EXPECT_NEAR(glm::distance(means[2].base_color, {0.5f, 0.1f, 0.0f}), 0.0f, 1e-6f);
+  EXPECT_EQ(means[3].base_color, glm::vec3(1.0f, 0.125f, 1.0f));
+  EXPECT_EQ(means[3].emissive, glm::vec3(8.0f, 0.5f, 200.0f));
+  EXPECT_EQ(means[4].base_color, glm::vec3(4.0f, 0.125f, 100.0f));
   EXPECT_NEAR(glm::distance(means[0].base_color, {0.5f, 0.5f * 128 / 255 / 2, 0.5f}), 0.0f, 1e-3f);
   EXPECT_NEAR(glm::distance(means[1].base_color, {0.5f, 0.0f, 0.0f}), 0.0f, 1e-3f);
 }

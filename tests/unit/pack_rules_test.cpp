@@ -3,6 +3,8 @@
 // schema; here is every kind of rule with its exact words, and the rules between fields.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
 #include <limits>
 
 #include "pack_breach.h"
@@ -12,6 +14,14 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float inf = std::numeric_limits<float>::infinity();
+
+/// Makes the second image a texel of half floats.
+void set_halves(Contents& c, const std::array<std::uint16_t, 4>& halves) {
+  c.images[1].format = ImageFormat::rgba16_sfloat;
+  c.images[1].size_bytes = sizeof(halves);
+  c.image_data.resize(c.images[1].first_byte + sizeof(halves));
+  std::memcpy(&c.image_data[c.images[1].first_byte], halves.data(), sizeof(halves));
+}
 
 const Breach breaches[] = {
     // Every kind of rule
@@ -78,6 +88,24 @@ const Breach breaches[] = {
      "images[0].size_bytes: 40 where its levels have 44"},
     {"ImageLevels", [](Contents& c) { c.images[0].level_count = 4; },
      "images[0].level_count: 4 is above the 3 levels of its size"},
+    {"ImageFormat", [](Contents& c) { c.images[1].format = ImageFormat{7}; }, "images[1].format: 7 is no ImageFormat"},
+    {"HalfFloatSize", [](Contents& c) { c.images[1].format = ImageFormat::rgba16_sfloat; },
+     "images[1].size_bytes: 4 where its levels have 8"},
+    {"HalfFloatInfinite",
+     [](Contents& c) {
+       set_halves(c, {0, 0x7BFF, 0x7C00, 0});
+     },
+     "images[1]: half float 2 is negative or not finite (31744)"},
+    {"HalfFloatNotANumber",
+     [](Contents& c) {
+       set_halves(c, {0x7E00, 0, 0, 0});
+     },
+     "images[1]: half float 0 is negative or not finite (32256)"},
+    {"HalfFloatNegative",
+     [](Contents& c) {
+       set_halves(c, {0, 0, 0, 0xBC00});
+     },
+     "images[1]: half float 3 is negative or not finite (48128)"},
     {"LargestImage",
      [](Contents& c) {
        c.images[0].width = c.images[0].height = 16384;
@@ -144,6 +172,14 @@ TEST(PackRulesLimits, AFaultIsFoundAnywhereInALongSection) {
     EXPECT_EQ(check(view_of(broken)), "vertex_attributes[" + std::to_string(at) + "].uv1.y: nan is not finite");
   }
   EXPECT_EQ(check(view_of(contents)), "");
+}
+
+TEST(PackRules, HalfFloatsUpToTheLargestAreFine) {
+  const Folder folder;
+  Contents contents = sample();
+  set_halves(contents, {0, 0x7BFF, 1, 0x3C00});
+  write(folder / "a.pack", contents);
+  EXPECT_EQ(open_error(folder / "a.pack"), "");
 }
 
 }  // namespace
