@@ -27,7 +27,7 @@ frame::ViewConstants view_constants(const RenderSettings& settings, float aspect
           .eye_ws = settings.camera.eye_ws,
           .near_m = settings.camera.znear_m,
           .forward_ws = axes_of(settings.camera).forward,
-          .ambient = settings.ambient,
+          .ambient = settings.ambient.coefficients,
           .size_px = {static_cast<float>(settings.width), static_cast<float>(settings.height)},
           .face_size_px = static_cast<float>(settings.recipe.face_size_px),
           .z_far_m = settings.recipe.z_far_m,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frame/recipe.h"
+#include "lights/ambient.h"
 #include "shadows/cull/draw_lists.h"
 #include "shadows/filter/visibility_query.h"
 #include "view/camera.h"
@@ -19,7 +20,7 @@ struct RenderSettings {
   Camera camera;
   uint32_t width = 1280;
   uint32_t height = 720;
-  float ambient = 0.0f;                    // radiance from everywhere, for scenes that would be black without
+  Ambient ambient;                         // light from everywhere, for scenes that would be black without
   float headlight = 0.0f;                  // of a white surface that faces the camera, by a light in the camera
   std::optional<float> exposure_ev;        // stops; absent: from the picture's own brightness
   std::vector<uint32_t> previous_centers;  // FrameStats::centers of the frame before, where the recipe has stability

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lights/ambient.h"
 #include "lights/error_selection.h"
 #include "lights/light_samples.h"
 #include "recipe_schema.h"
@@ -19,7 +20,7 @@ namespace chandelier {
 struct SampledView {
   Camera camera;
   float aspect = 1.0f;
-  float ambient = 0.0f;
+  Ambient ambient;
   float headlight = 0.0f;
   std::optional<float> exposure_ev;
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "frame_schema.h"
+#include "lights/ambient.h"
 #include "lights/light_clusters.h"
 #include "lights/surroundings.h"
 #include "recipe_schema.h"
@@ -36,7 +37,7 @@ struct LightList {
 /// What a selection depends on beside world, recipe and camera. What the recipe does not ask for may be missing.
 struct SelectionInputs {
   Surroundings* surroundings = nullptr;  // of the same world; needed for walls, and to select by error
-  float ambient = 0.0f;                  // how bright the picture will be, to select by error
+  Ambient ambient;                       // how bright the picture will be, to select by error
   float headlight = 0.0f;
   std::optional<float> exposure_ev;
   /// Each light's centre a frame ago, pack::none where it was not in view, which the recipe's stability favours (not

@@ -123,7 +123,8 @@ void LightSamples::place_points(const Camera& camera, float aspect, const Sample
     if (!hit || scene_.materials[hit->material].unlit) continue;
     const SeenPlace seen = seen_place(*hit, camera.eye_ws, way);
     const MeanMaterial& material = scene_.materials[hit->material];
-    const float reflected_of_all = settings.ambient - settings.headlight * glm::dot(seen.normal_ws, way);
+    const glm::vec3 reflected_of_all =
+        settings.ambient.at(seen.normal_ws) - settings.headlight * glm::dot(seen.normal_ws, way);
     const glm::vec3 dark = material.emissive + reflected_of_all * material.base_color;
     points_.push_back(
         {.position_ws = seen.position_ws, .normal_ws = seen.normal_ws, .unshadowable = dark, .reference = dark});

@@ -10,6 +10,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "lights/ambient.h"
 #include "lights/mean_materials.h"
 #include "pack_schema.h"
 #include "rays/pack_rays.h"
@@ -57,9 +58,9 @@ SampledLights sampled_lights(const World& world, std::span<const LightId> ids);
 struct SampleSettings {
   uint32_t columns = 64;  // of the grid of points over the picture
   uint32_t rows = 36;
-  uint32_t scatter = 0;  // another number, other places in the grid's cells
-  float ambient = 0.0f;  // as RenderSettings has it
-  float headlight = 0.0f;
+  uint32_t scatter = 0;              // another number, other places in the grid's cells
+  Ambient ambient;                   // as RenderSettings has it
+  float headlight = 0.0f;            // likewise
   std::optional<float> exposure_ev;  // absent: from the points' own brightness, as shading/exposure.comp does
 };
 

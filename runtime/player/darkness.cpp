@@ -23,13 +23,14 @@ bool is_unlit(const pack::View& pack) {
 }
 
 bool is_dark_without_lights(const Options& options, const pack::View& pack) {
-  return pack.lights.empty() && options.headlight.value_or(0.0f) == 0.0f && options.ambient == 0.0f && !is_unlit(pack);
+  return pack.lights.empty() && options.headlight.value_or(0.0f) == 0.0f && options.ambient.is_dark() &&
+         !is_unlit(pack);
 }
 
 }  // namespace
 
 float automatic_headlight(const Options& options, const pack::View& pack) {
-  return pack.lights.empty() && options.ambient == 0.0f ? headlight_on : 0.0f;
+  return pack.lights.empty() && options.ambient.is_dark() ? headlight_on : 0.0f;
 }
 
 void warn_of_no_lights(const Options& asked, const Options& options, const pack::View& pack) {
@@ -40,7 +41,7 @@ void warn_of_no_lights(const Options& asked, const Options& options, const pack:
   if (is_dark_without_lights(options, pack))
     warn(options,
          "has no lights: only what glows is visible; --headlight on or --ambient 0.5 shows the rest; " + lamps);
-  else if (!asked.headlight && options.ambient == 0.0f)
+  else if (!asked.headlight && options.ambient.is_dark())
     warn(options, "has no lights: a headlight in the camera shows it (--headlight off turns it off); " + lamps);
 }
 
@@ -61,7 +62,7 @@ void warn_of_black(const Options& options, const pack::View& pack, const Picture
          fmt::format("the picture is black with --exposure {:g}; try --exposure auto, which works unless nothing in "
                      "view is lit",
                      *options.exposure_ev));
-  else if (options.headlight.value_or(0.0f) > 0.0f || options.ambient > 0.0f)
+  else if (options.headlight.value_or(0.0f) > 0.0f || !options.ambient.is_dark())
     warn(options, "the picture is black: the camera sees nothing, or only black surfaces; try another --camera");
   else
     warn(options,

@@ -45,6 +45,17 @@ void read_exposure(const std::string& text, Options& options) {
   options.exposure_ev = ev;
 }
 
+void read_ambient(const std::string& text, Options& options) {
+  const auto comma = text.find(',');
+  const bool is_one = comma == std::string::npos;
+  float up = 0.0f, down = 0.0f;
+  const auto is_radiance = [](float value) { return value >= 0.0f && value <= 1e6f; };  // "nan" is none
+  if (!CLI::detail::lexical_cast(text.substr(0, comma), up) || !is_radiance(up) ||
+      (!is_one && (!CLI::detail::lexical_cast(text.substr(comma + 1), down) || !is_radiance(down))))
+    throw UsageError(fmt::format("--ambient: must be a radiance from 0 to 1e6, or two as UP,DOWN ({})", text));
+  options.ambient = is_one ? Ambient::constant(up) : Ambient::between(up, down);
+}
+
 void read_anisotropy(const std::string& text, Options& options) {
   if (text == "auto") return;
   float samples = 0.0f;
@@ -219,9 +230,9 @@ Options checked(const Typed& typed) {
   if (typed.pack.empty()) throw UsageError("PACK is missing");
   options.pack = typed.pack;
   options.frames = typed.frames;
-  options.ambient = typed.ambient;
   read_size(typed.size, options);
   read_exposure(typed.exposure, options);
+  read_ambient(typed.ambient, options);
   read_headlight(typed.headlight, options);
   read_anisotropy(typed.anisotropy, options);
   read_camera(typed.camera, options);

@@ -43,7 +43,7 @@ struct Options {
   std::string device;
   bool validation = false;
   bool keep_shadow_maps = false;  // from frame to frame; windows always do
-  float ambient = 0.0f;
+  Ambient ambient;
   std::optional<float> headlight;  // absent: automatic_headlight() decides for the pack
   std::optional<float> exposure_ev;
   std::optional<float> anisotropy;  // absent: as RendererOptions has it

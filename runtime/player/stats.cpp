@@ -82,6 +82,15 @@ Json size_json(const RenderSettings& settings) {
   return {{"width", settings.width}, {"height", settings.height}};
 }
 
+// A number where one says it all.
+Json ambient_json(const Ambient& ambient) {
+  const glm::vec3& first = ambient.coefficients[0];
+  if (ambient.is_constant() && first.x == first.y && first.y == first.z) return first.x;
+  Json json = Json::array();
+  for (const glm::vec3& c : ambient.coefficients) json.push_back({c.x, c.y, c.z});
+  return json;
+}
+
 Json counters_json(const FrameStats& stats) {
   Json counts = Json::object();
   for (const Counter& counter : counters()) counts[std::string(counter.name)] = stats.*counter.value;
@@ -127,7 +136,7 @@ Json to_json(const Run& run) {
                {"camera", camera_json(run.camera)},
                {"preset", run.preset},
                {"recipe", recipe_json(run.settings.recipe)},
-               {"ambient", run.settings.ambient},
+               {"ambient", ambient_json(run.settings.ambient)},
                {"headlight", run.settings.headlight},
                {"exposure_ev", run.stats.exposure_ev},
                {"frames", run.frames},

@@ -124,9 +124,11 @@ void declare_view(CLI::App& app, Typed& typed) {
          "pack's first camera; without one, a view of something lit]")
       ->type_name("NAME|ex,ey,ez,tx,ty,tz,fov_deg")
       ->group("View");
-  app.add_option("--ambient", typed.ambient, "Radiance from every direction")
-      ->type_name("R")
-      ->check(number_between(0.0, 1e6))
+  app.add_option(
+         "--ambient", typed.ambient,
+         "Radiance from every direction, or from straight above and straight below, and between them in between. "
+         "It casts no shadow")
+      ->type_name("R|UP,DOWN")
       ->capture_default_str()
       ->group("View");
   app.add_option("--headlight", typed.headlight,

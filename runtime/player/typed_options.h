@@ -17,7 +17,7 @@ constexpr uint32_t largest_picture = 16384;  // texels a side; no Vulkan device 
 
 struct Typed {
   std::string pack, output, size = "1280x720", camera, stats, device, preset, exposure = "auto", headlight = "auto",
-                            anisotropy = "auto", compare, report, path;
+                            anisotropy = "auto", ambient = "0", compare, report, path;
   std::optional<uint32_t> frames;
   bool list_devices = false;
   bool predict = false;
@@ -27,7 +27,6 @@ struct Typed {
   std::vector<std::string> settings;  // one of recipe_settings() each; empty where not given
   std::optional<float> max_error;
   std::optional<uint32_t> max_shadow_maps, max_shadow_bytes;
-  float ambient = 0.0f;
 };
 
 std::vector<std::string> preset_names();

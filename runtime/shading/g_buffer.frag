@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
 #include "pack_schema.glsl"
+#include "shading/ambient.glsl"
 #include "shading/material.glsl"
 #include "shading/occlusion.glsl"
 #include "shading/surface.glsl"
@@ -56,7 +57,7 @@ void main() {
   if (m.alpha_mode == ALPHA_MODE_MASK && base.a < m.alpha_cutoff) discard;
   surface_bits = pack_surface(Surface(bent, facet, base.rgb, metal_rough.x, metal_rough.y));
   float facing = max(-dot(bent, normalize(position_from_eye)), 0.0);
-  float reflected = view.ambient * occlusion + view.headlight * facing;
+  vec3 reflected = ambient_at(view.ambient, bent) * occlusion + view.headlight * facing;
   radiance = m.unlit != 0u ? vec4(base.rgb, UNLIT_ALPHA)
                            : vec4(emissive + reflected * min(base.rgb, 1.0), alpha_of_occlusion(occlusion));
 }

@@ -6,6 +6,8 @@ import re
 import sys
 import unittest
 
+import numpy
+
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
 from pictures import read_pfm
 from play_tool import LIGHTS, PlayTest, SMALL, main, png_size
@@ -73,6 +75,16 @@ class Headless(PlayTest):
         for ambient in (0, 1):
             self.play_well(self.pack, "--output", f"{ambient}.pfm", "--ambient", ambient, *SMALL)
         self.assertGreater(read_pfm(self.folder / "1.pfm").mean(), read_pfm(self.folder / "0.pfm").mean())
+
+    def test_ambient_light_by_direction(self):
+        from_above, from_below, everywhere = (self.stats("--ambient", each)["ambient"] for each in ("2,0", "0,2", "1,1"))
+        self.assertEqual(everywhere, 1)
+        self.assertEqual([from_above[0], from_above[2:]], [[1, 1, 1], [[0, 0, 0]] * 7])
+        self.assertAlmostEqual(from_above[1][0], 2 / 3, 6)
+        self.assertAlmostEqual(from_below[1][0], -2 / 3, 6)
+        for ambient in ("2,0", "0,2"):
+            self.play_well(self.pack, "--output", f"{ambient}.pfm", "--ambient", ambient, *SMALL)
+        self.assertFalse(numpy.array_equal(read_pfm(self.folder / "2,0.pfm"), read_pfm(self.folder / "0,2.pfm")))
 
     def test_cameras_by_name_and_by_numbers(self):
         named = self.stats()["camera"]

@@ -96,7 +96,7 @@ TEST_F(RecipesTest, NoLightsLeaveBlackAndAmbient) {
     const Frame dark = frame(renderer, settings);
     EXPECT_EQ(brightness(dark.picture), 0.0);
     EXPECT_EQ(dark.stats.shadow_maps, 0u);
-    settings.ambient = 0.25f;
+    settings.ambient = Ambient::constant(0.25f);
     const auto center = radiance_at(frame(renderer, settings).picture, 64, 90);
     EXPECT_NEAR(center.x, 0.125f, 0.001f);  // the floor's 0.5
   }

@@ -267,7 +267,7 @@ TEST_F(TexturesTest, HalfFloatsGlowAndReflect) {
   material.emissive = factor;
   scene.add(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), scene.add_material(material));
   RenderSettings settings = settings_for(look({0, 0, 2}, {0, 0, 0}, 2 * std::atan(0.5f)), size_px, size_px, Recipe());
-  settings.ambient = 0.25f;
+  settings.ambient = Ambient::constant(0.25f);
   const Picture picture = draw(device(), scene, settings);
   for (size_t i = 0; i < 4; ++i) {
     const glm::vec3 texel(half_texel(i));
@@ -305,7 +305,7 @@ TEST_F(TexturesTest, KeepOcclusionApartFromLight) {
   Recipe recipe;
   recipe.shade = Shade::lambert;
   RenderSettings settings = settings_for(look({0, 0, 4}, {0, 0, 0}, 2 * std::atan(0.5f)), size_px, size_px, recipe);
-  settings.ambient = 0.25f;
+  settings.ambient = Ambient::constant(0.25f);
   const Picture picture = draw(device(), scene, settings);
   const auto alpha = [&](uint32_t x, uint32_t y) { return picture.radiance[4 * (size_px * y + x) + 3]; };
   const float lit_only = at_uv(picture, 0.75f, 0.25f).r - 0.25f * 0.5f;

@@ -78,6 +78,30 @@ TEST(LightSamplesTest, AddsWhatTheShaderAdds) {
   EXPECT_NEAR(luminance / std::exp2(s.samples->exposure_ev()) / expected, 1.0f, 0.01f);
 }
 
+// A floor and a ceiling, each lit from its side alone: what the g-buffer pass adds there.
+TEST(LightSamplesTest, AmbientLightIsThatOfTheNormal) {
+  test::Scene scene;
+  const uint32_t paint = scene.add_material(test::plain_material({0.5f, 0.25f, 1.0f}));
+  scene.add(test::level_square(glm::vec3(0), 4), paint);
+  scene.add(test::quad({0, 4, 0}, {4, 0, 0}, {0, 0, 4}), paint);  // its front looks down
+  const pack::File pack = scene.open();
+  const rays::PackRays rays(pack.view());
+  const SampledScene sampled(pack.view(), rays);
+  const Camera camera{.eye_ws = {0, 2, 3.9f}, .yfov_rad = 1.5f};
+  const SampleSettings settings{.ambient = Ambient::between(3.0f, 0.5f), .exposure_ev = 0.0f};
+  const LightSamples samples(sampled, {}, camera, 1.0f, settings);
+  uint32_t floor = 0, ceiling = 0;
+  for (const auto& point : samples.points()) {
+    const bool is_floor = point.position_ws.y < 2.0f;
+    (is_floor ? floor : ceiling) += 1;
+    const float expected = 1.75f + (is_floor ? 1.0f : -1.0f) * 2.0f / 3.0f * 1.25f;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(point.unshadowable[c], expected * glm::vec3(0.5f, 0.25f, 1.0f)[c], 1e-6f);
+    EXPECT_EQ(point.unshadowable, point.reference);
+  }
+  EXPECT_GT(floor, 100u);
+  EXPECT_GT(ceiling, 100u);
+}
+
 TEST(ShownCurveTest, TableAndFormulaAgree) {
   const ShownCurve table;
   for (float x = 0.0f; x < 40.0f; x = x * 1.01f + 1e-4f) EXPECT_NEAR(table(x), shown(x), 3e-4f) << x;

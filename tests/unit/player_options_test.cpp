@@ -64,6 +64,17 @@ TEST(PlayerOptions, TheHeadlightIsLeftToThePackUnlessAsked) {
                    std::string("--headlight: must be auto, on, off or a strength from 0 to 1e6 (") + wrong + ")");
 }
 
+TEST(PlayerOptions, AmbientIsOneRadianceOrTwo) {
+  EXPECT_TRUE(accepted("scene.chandelier").ambient.is_dark());
+  EXPECT_EQ(accepted("scene.chandelier --ambient 2.5").ambient, Ambient::constant(2.5f));
+  EXPECT_EQ(accepted("scene.chandelier --ambient 3,0.5").ambient, Ambient::between(3.0f, 0.5f));
+  EXPECT_EQ(accepted("scene.chandelier --ambient 0,1").ambient, Ambient::between(0.0f, 1.0f));
+  EXPECT_EQ(accepted("scene.chandelier --ambient 0.7,0.7").ambient, Ambient::constant(0.7f));
+  for (const char* wrong : {"bright", "-1", "nan", "1e7", "1,", ",1", ",", "1,nan", "1,-1", "1,2,3", "1;2", "inf,1"})
+    expect_refused(std::string("scene.chandelier --ambient ") + wrong,
+                   std::string("--ambient: must be a radiance from 0 to 1e6, or two as UP,DOWN (") + wrong + ")");
+}
+
 TEST(PlayerOptions, EveryAnswerOfEveryStageIsAnOption) {
   for (const StageChoices& choices : stage_choices())
     for (const auto& [chosen, meaning] : choices.answers) {
@@ -95,7 +106,7 @@ TEST(PlayerOptions, ExplicitSettingsOverrideThePreset) {
   EXPECT_FLOAT_EQ(recipe.stability, 0.25f);
   EXPECT_EQ(recipe.face_size_px, 128u);
   EXPECT_EQ(recipe.shadow_budget_bytes, uint64_t{64} << 20);
-  EXPECT_FLOAT_EQ(options.ambient, 0.5f);
+  EXPECT_EQ(options.ambient, Ambient::constant(0.5f));
   EXPECT_FLOAT_EQ(options.exposure_ev.value(), -1.5f);
   EXPECT_EQ(options.frames, 7u);
   EXPECT_EQ(options.width, 64u);
