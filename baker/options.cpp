@@ -213,7 +213,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   add_voxel_options(app, options.bake.voxels);
   add_image_options(app, options.bake.images);
   app.add_flag("--compress", options.compress,
-               "Make the pack small: compress sections where that saves; they are decoded when the pack is opened");
+               "Make the pack small: compress sections and single images where that saves; sections are decoded when "
+               "the pack is opened, images when they are used");
   add_build_options(app, options);
   try {
     app.parse(argc, argv);

@@ -160,7 +160,7 @@ class Section:
             raise SchemaError(f"section {self.name}: neither a known record nor u8")
         self.cpp = self.record.name if self.record else "std::byte"
         self.size = self.record.size if self.record else 1
-        self.same_count = element.get("same_count")
+        self.same_count, self.always_raw = element.get("same_count"), element.get("always_raw") == "yes"
         self.min_count, self.max_count = element.get("min_count"), element.get("max_count")
         self.single = self.min_count == "1" and self.max_count == "1"
         self.checks = []
@@ -279,7 +279,7 @@ class Schema:
         for record in self.records:
             lines += [f"record {record.name} {record.size}"]
             lines += [f" {f.name} {f.type_text} {f.offset} {f.enum or ''}".rstrip() for f in record.fields]
-        lines += [f"section {s.kind} {s.name} {s.cpp}" for s in self.sections]
+        lines += [f"section {s.kind} {s.name} {s.cpp}" + " raw" * s.always_raw for s in self.sections]
         return "\n".join(lines) + "\n"
 
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <iterator>
 
@@ -16,6 +15,8 @@
 #include "pack_checks_lights.h"
 #include "pack_checks_text.h"
 #include "pack_checks_voxels.h"
+#include "pack_codec.h"
+#include "pack_images.h"
 #include "parallel.h"
 
 namespace chandelier::pack {
@@ -72,16 +73,12 @@ std::string fault(const Image& image) {
   if (image.size_bytes != image_bytes(image)) {
     return ".size_bytes: " + text(image.size_bytes) + " where its levels have " + text(image_bytes(image));
   }
-  return {};
-}
-
-std::string half_float_fault(std::span<const std::byte> texels) {
-  for (std::size_t i = 0; i + 1 < texels.size(); i += 2) {
-    std::uint16_t bits = 0;
-    std::memcpy(&bits, &texels[i], sizeof(bits));
-    if (is_half_texel(bits)) continue;
-    return ": half float " + text(std::uint64_t{i / 2}) + " is negative or not finite (" + text(std::uint64_t{bits}) +
-           ")";
+  if (image.codec == ImageCodec::raw) {
+    if (image.stored_bytes == image.size_bytes) return {};
+    return ".stored_bytes: " + text(image.stored_bytes) + " of a raw image of " + text(image.size_bytes) + " bytes";
+  }
+  if (std::string line = coded_size_fault(Codec::zstd, 1, image.stored_bytes, image.size_bytes); !line.empty()) {
+    return ".size_bytes: " + text(image.size_bytes) + " are too many for the stored " + text(image.stored_bytes);
   }
   return {};
 }
@@ -109,12 +106,19 @@ std::string first_fault(const char* section, std::span<const Record> records) {
   return {};
 }
 
-std::string half_float_fault(const View& view) {
+// What coded images hold is checked where they are decoded.
+std::string texel_fault(const View& view) {
+  std::uint64_t end = 0;
   for (std::size_t i = 0; i < view.images.size(); ++i) {
     const Image& image = view.images[i];
-    if (image.format != ImageFormat::rgba16_sfloat) continue;
-    if (std::string line = half_float_fault(view.image_data.subspan(image.first_byte, image.size_bytes)); !line.empty())
-      return at("images", i) + line;
+    if (image.first_byte < end) {
+      return at("images", i) + ".first_byte: " + text(image.first_byte) + " is before the end of the image before, " +
+             text(end);
+    }
+    end = image.first_byte + image.stored_bytes;
+    if (image.format != ImageFormat::rgba16_sfloat || image.codec != ImageCodec::raw) continue;
+    const std::string line = half_float_fault(view.image_data.subspan(image.first_byte, image.stored_bytes));
+    if (!line.empty()) return at("images", i) + line;
   }
   return {};
 }
@@ -163,7 +167,7 @@ std::string check(const View& view, std::size_t most_threads) {
       [&] { return first_fault("batch_instances", view.batch_instances); },
       [&] { return order_fault(view); },
       [&] { return first_fault("images", view.images); },
-      [&] { return half_float_fault(view); },
+      [&] { return texel_fault(view); },
       [&] { return first_fault("lights", view.lights); },
       [&] { return light_fault(view); },
       [&] { return animation_fault(view); },

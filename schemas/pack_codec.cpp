@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sections' codecs. A coded section is a row of zstd frames, one for each codec_chunk_bytes of its records.
+// The codecs of sections and images. What is coded is a row of zstd frames, one for each codec_chunk_bytes of records.
 #include "pack_codec.h"
 
 #include <zstd.h>
@@ -70,9 +70,10 @@ std::span<const std::uint32_t> words_of(Bytes bytes) {
 
 // ---- Encoding
 
-/// A section that is being encoded.
+/// A section or an image that is being encoded.
 struct Coding {
-  std::size_t section;  // of section_infos
+  std::size_t place;  // of what is returned
+  bool holds_corners;
   Bytes records;
   std::size_t stride;
   Codec codec = Codec::zstd;
@@ -80,11 +81,6 @@ struct Coding {
   std::vector<std::vector<std::byte>> frames = {};
   std::vector<std::uint32_t> vertices_before = {};  // for Codec::triangles: of each frame
 };
-
-bool holds_corners(const Coding& coding) {
-  const Section kind = section_infos[coding.section].kind;
-  return (kind == Section::indices || kind == Section::voxel_indices) && coding.records.size() % (3 * word) == 0;
-}
 
 /// Finds the codec that makes a sample from the middle smallest.
 void choose_codec(Coding& coding) {
@@ -96,7 +92,7 @@ void choose_codec(Coding& coding) {
   const Bytes sample = coding.records.subspan(first * coding.stride, sampled * coding.stride);
   coding.codec = Codec::columns;
   coding.layouts = choose_layouts(sample, coding.stride, cost);
-  if (!holds_corners(coding) || !has_triangle_codec()) return;
+  if (!coding.holds_corners || !has_triangle_codec()) return;
   const auto corners = words_of(sample);
   const std::size_t columns_cost = cost(to_columns(sample, coding.stride, coding.layouts));
   const std::size_t triangles_cost = cost(to_triangle_code(corners, *std::ranges::min_element(corners)));
@@ -152,20 +148,19 @@ std::size_t coded_bound(Codec codec, std::size_t record_bytes, std::size_t strid
   return codec == Codec::columns ? columns_bytes(record_bytes, stride) : triangle_code_bound(record_bytes / word);
 }
 
-std::string decode_chunk(const CodedSection& section, Bytes frame, std::span<std::byte> records) {
+std::string decode_chunk(const Coded& each, Bytes frame, std::span<std::byte> records) {
   thread_local const Decompressor context(ZSTD_createDCtx());
   if (!context) throw std::bad_alloc();
   const unsigned long long content = ZSTD_getFrameContentSize(frame.data(), frame.size());
-  if (content > coded_bound(section.codec, records.size(), section.stride_bytes)) return "a frame of a wrong size";
-  std::vector<std::byte> coded(section.codec == Codec::zstd ? 0 : content);
-  const std::span<std::byte> target = section.codec == Codec::zstd ? records : std::span(coded);
+  if (content > coded_bound(each.codec, records.size(), each.stride_bytes)) return "a frame of a wrong size";
+  std::vector<std::byte> coded(each.codec == Codec::zstd ? 0 : content);
+  const std::span<std::byte> target = each.codec == Codec::zstd ? records : std::span(coded);
   if (content != target.size()) return "a frame of a wrong size";
   const std::size_t got = ZSTD_decompressDCtx(context.get(), target.data(), target.size(), frame.data(), frame.size());
   if (ZSTD_isError(got)) return ZSTD_getErrorName(got);
   if (got != content) return "a frame of a wrong size";
-  if (section.codec == Codec::columns && !from_columns(coded, section.stride_bytes, records))
-    return "malformed columns";
-  if (section.codec == Codec::triangles &&
+  if (each.codec == Codec::columns && !from_columns(coded, each.stride_bytes, records)) return "malformed columns";
+  if (each.codec == Codec::triangles &&
       !from_triangle_code(coded, {reinterpret_cast<std::uint32_t*>(records.data()), records.size() / word})) {
     return "malformed triangles";
   }
@@ -174,14 +169,14 @@ std::string decode_chunk(const CodedSection& section, Bytes frame, std::span<std
 
 /// One frame to decode.
 struct Task {
-  std::size_t section, chunk;
+  std::size_t number, chunk;  // of what is coded, and in it
   Bytes frame;
 };
 
-/// Appends a section's frames, one a chunk, which must fill what is stored.
-std::string find_frames(const CodedSection& section, std::size_t number, std::vector<Task>& tasks) {
-  const std::size_t chunks = chunk_count(section.records.size() / section.stride_bytes, section.stride_bytes);
-  Bytes rest = section.stored;
+/// Appends the frames, one a chunk, which must fill what is stored.
+std::string find_frames(const Coded& each, std::size_t number, std::vector<Task>& tasks) {
+  const std::size_t chunks = chunk_count(each.records.size() / each.stride_bytes, each.stride_bytes);
+  Bytes rest = each.stored;
   for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
     const std::size_t size = ZSTD_findFrameCompressedSize(rest.data(), rest.size());
     if (ZSTD_isError(size)) return ZSTD_getErrorName(size);
@@ -194,20 +189,13 @@ std::string find_frames(const CodedSection& section, std::size_t number, std::ve
   return rest.empty() || filler ? "" : "bytes after the last frame";
 }
 
-}  // namespace
-
-std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads) {
-  std::vector<Coding> codings;
-  for (std::size_t i = 0; i < section_infos.size(); ++i) {
-    const Bytes records = section_bytes(view, i);
-    const std::size_t stride = section_infos[i].stride_bytes;
-    if (records.empty()) continue;
-    codings.push_back({i, records, stride});
-    codings.back().frames.resize(chunk_count(records.size() / stride, stride));
-  }
+/// Encodes in threads; gives `count` results.
+std::vector<Encoded> encode(std::vector<Coding> codings, std::size_t count, std::size_t most_threads) {
   parallel_for(codings.size(), most_threads, [&](std::size_t i) {
-    choose_codec(codings[i]);
-    if (codings[i].codec == Codec::triangles) codings[i].vertices_before = vertices_before_chunks(codings[i]);
+    Coding& coding = codings[i];
+    coding.frames.resize(chunk_count(coding.records.size() / coding.stride, coding.stride));
+    choose_codec(coding);
+    if (coding.codec == Codec::triangles) coding.vertices_before = vertices_before_chunks(coding);
   });
   std::vector<std::pair<std::size_t, std::size_t>> chunks;  // of codings and their frames
   for (std::size_t i = 0; i < codings.size(); ++i) {
@@ -215,9 +203,31 @@ std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads)
   }
   parallel_for(chunks.size(), most_threads,
                [&](std::size_t i) { encode_chunk(codings[chunks[i].first], chunks[i].second); });
-  std::vector<Encoded> encoded(section_infos.size());
-  for (const Coding& coding : codings) encoded[coding.section] = encoded_of(coding);
+  std::vector<Encoded> encoded(count);
+  for (const Coding& coding : codings) encoded[coding.place] = encoded_of(coding);
   return encoded;
+}
+
+}  // namespace
+
+std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads) {
+  std::vector<Coding> codings;
+  for (std::size_t i = 0; i < section_infos.size(); ++i) {
+    const Bytes records = section_bytes(view, i);
+    const auto& [kind, name, stride, is_always_raw] = section_infos[i];
+    if (records.empty() || is_always_raw) continue;
+    const bool corners = kind == Section::indices || kind == Section::voxel_indices;
+    codings.push_back({i, corners && records.size() % (3 * word) == 0, records, stride});
+  }
+  return encode(std::move(codings), section_infos.size(), most_threads);
+}
+
+std::vector<Encoded> encode_images(std::span<const std::span<const std::byte>> images, std::size_t most_threads) {
+  std::vector<Coding> codings;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!images[i].empty()) codings.push_back({i, false, images[i], 1});
+  }
+  return encode(std::move(codings), images.size(), most_threads);
 }
 
 std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count) {
@@ -235,19 +245,18 @@ std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint6
   return {};
 }
 
-std::vector<std::string> decode_sections(std::span<const CodedSection> sections, std::size_t most_threads) {
-  std::vector<std::string> faults(sections.size());
+std::vector<std::string> decode_all(std::span<const Coded> coded, std::size_t most_threads) {
+  std::vector<std::string> faults(coded.size());
   std::vector<Task> tasks;
-  for (std::size_t i = 0; i < sections.size(); ++i) faults[i] = find_frames(sections[i], i, tasks);
+  for (std::size_t i = 0; i < coded.size(); ++i) faults[i] = find_frames(coded[i], i, tasks);
   std::vector<std::string> task_faults(tasks.size());
   parallel_for(tasks.size(), most_threads, [&](std::size_t i) {
-    const CodedSection& section = sections[tasks[i].section];
-    if (!faults[tasks[i].section].empty()) return;
-    const auto records = chunk_of(section.records, section.stride_bytes, tasks[i].chunk);
-    task_faults[i] = decode_chunk(section, tasks[i].frame, records);
+    const Coded& each = coded[tasks[i].number];
+    if (!faults[tasks[i].number].empty()) return;
+    task_faults[i] = decode_chunk(each, tasks[i].frame, chunk_of(each.records, each.stride_bytes, tasks[i].chunk));
   });
   for (std::size_t i = tasks.size(); i-- > 0;) {
-    if (!task_faults[i].empty()) faults[tasks[i].section] = task_faults[i];
+    if (!task_faults[i].empty()) faults[tasks[i].number] = task_faults[i];
   }
   return faults;
 }

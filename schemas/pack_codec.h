@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sections' codecs. A coded section is a row of zstd frames, one for each codec_chunk_bytes of its records.
+// The codecs of sections and images. What is coded is a row of zstd frames, one for each codec_chunk_bytes of records.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,21 @@
 
 namespace chandelier::pack {
 
+/// Codecs save at least a twentieth, or what they code stays raw.
 struct Encoded {
   Codec codec = Codec::raw;
   std::vector<std::byte> bytes;  ///< Empty for Codec::raw: what is stored are the section's own bytes.
 };
 
-/// Encodes each section of section_infos with the codec that is best on a sample of it; raw if that saves less than a
-/// twentieth. The same view gives the same bytes, whatever the number of threads; 0: all cores.
+/// Encodes each section of section_infos with the codec that is best on a sample of it; those that are always raw not.
+/// The same view gives the same bytes, whatever the number of threads; 0: all cores.
 std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads = 0);
 
-/// One section that is stored with a codec, and where its records go.
-struct CodedSection {
+/// Encodes each of `images` by zstd, like encode_sections().
+std::vector<Encoded> encode_images(std::span<const std::span<const std::byte>> images, std::size_t most_threads = 0);
+
+/// A section or an image that is stored with a codec, and where its records go; an image's are its bytes.
+struct Coded {
   Codec codec;
   std::uint32_t stride_bytes;
   std::span<const std::byte> stored;
@@ -34,6 +38,6 @@ struct CodedSection {
 std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count);
 
 /// Decodes all; none is raw and all passed coded_size_fault(). Gives for each what is wrong with it or an empty string.
-std::vector<std::string> decode_sections(std::span<const CodedSection> sections, std::size_t most_threads = 0);
+std::vector<std::string> decode_all(std::span<const Coded> coded, std::size_t most_threads = 0);
 
 }  // namespace chandelier::pack

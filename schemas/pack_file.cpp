@@ -20,6 +20,7 @@
 #include "file_kind.h"
 #include "pack_checks.h"
 #include "pack_codec.h"
+#include "pack_images.h"
 #include "parallel.h"
 
 namespace chandelier::pack {
@@ -94,8 +95,17 @@ FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
 /// Writes the sections first, several at a time, then the table with their checksums. Returns the file's size.
 std::uint64_t write_all(TemporaryFile& file, const View& view, Compression compression, std::size_t most_threads) {
   std::vector<Encoded> encoded;
-  if (compression == Compression::smallest) encoded = encode_sections(view, most_threads);
-  FileLayout layout = lay_out(view, encoded);
+  EncodedImages images;
+  View stored = view;
+  if (compression == Compression::smallest) {
+    images = encode_images(view, most_threads);
+    if (!images.images.empty()) {
+      stored.images = images.images;
+      stored.image_data = images.image_data;
+    }
+    encoded = encode_sections(stored, most_threads);
+  }
+  FileLayout layout = lay_out(stored, encoded);
   const auto write_one = [&](std::size_t i) {
     const std::span<const std::byte> bytes = layout.sections[i];
     layout.table[i].checksum = XXH3_64bits(bytes.data(), bytes.size());
@@ -186,6 +196,9 @@ std::string entry_fault(const SectionEntry& entry, const SectionInfo& info, std:
   if (!is_valid(entry.codec)) {
     return "codec: " + std::to_string(static_cast<std::uint32_t>(entry.codec)) + " is no Codec";
   }
+  if (info.is_always_raw && entry.codec != Codec::raw) {
+    return "codec: " + std::string(name_of(entry.codec)) + " where raw must be";
+  }
   if (entry.reserved != 0) return wrong("reserved", entry.reserved, 0);
   if (entry.stride_bytes != info.stride_bytes) return wrong("stride_bytes", entry.stride_bytes, info.stride_bytes);
   if (entry.offset_bytes != offset) return wrong("offset_bytes", entry.offset_bytes, offset);
@@ -271,7 +284,7 @@ std::string place_records(std::span<const std::byte> file, const std::vector<Fou
     if (data == MAP_FAILED) return "not enough memory to decode it (" + std::to_string(bytes) + " bytes)";
     decoded = Mapping(data, bytes);
   }
-  std::vector<CodedSection> coded;
+  std::vector<Coded> coded;
   std::vector<const Found*> coded_found;
   std::span<std::byte> room = decoded.bytes();
   for (const Found& found : sections) {
@@ -287,7 +300,7 @@ std::string place_records(std::span<const std::byte> file, const std::vector<Fou
     }
     set_section(view, found.info, records, entry.count);
   }
-  const std::vector<std::string> faults = decode_sections(coded, most_threads);
+  const std::vector<std::string> faults = decode_all(coded, most_threads);
   for (std::size_t i = 0; i < coded.size(); ++i) {
     if (faults[i].empty()) continue;
     return in_section(*coded_found[i], "codec: " + std::string(name_of(coded[i].codec)) + ": " + faults[i]);

@@ -19,8 +19,8 @@ struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `smallest` stores each section with the codec that makes it smallest: slower to write, and decoded when it is
-/// opened.
+/// `smallest` stores each section and each image with the codec that makes it smallest: slower to write. Sections are
+/// decoded when the pack is opened, images where they are needed (pack_images.h).
 enum class Compression { off, smallest };
 
 /// Writes `contents` to a temporary file beside `path`, syncs it and renames it over `path`; on failure nothing is left
@@ -76,7 +76,8 @@ class Mapping {
 /// the file's size in memory.
 enum class Hold { mapped, copied };
 
-/// A pack in memory. Every offset, count, index, enum and float has been checked when the constructor returns.
+/// A pack in memory. Every offset, count, index, enum and float has been checked when the constructor returns; but
+/// texels of coded images, which texels_of() of pack_images.h checks when it decodes them.
 class File {
  public:
   /// Checks and decodes big packs in at most `most_threads` threads; 0: as many as there are cores. Throws Error.

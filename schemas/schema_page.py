@@ -9,7 +9,7 @@ ATTRIBUTES = {
     "value": {"name", "value"},
     "record": {"name", "gpu"},
     "field": {"name", "type", "count", "unit", "min", "max", "enum", "index", "optional", "run", "length"},
-    "section": {"kind", "name", "record", "type", "same_count", "min_count", "max_count"},
+    "section": {"kind", "name", "record", "type", "same_count", "min_count", "max_count", "always_raw"},
     "stage": {"name", "question", "default", "folder", "code", "functions"},
     "answer": {"name", "identifier", "on"},
     "setting": {"name", "option", "placeholder", "type", "enum", "unit", "scale", "default", "least", "most", "optional"},

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "decode.h"
+#include "pack_images.h"
 
 namespace chandelier::baker {
 namespace {
@@ -28,8 +29,9 @@ std::string read_entry(const CacheEntry& entry, std::size_t source_count, std::s
   for (std::size_t i = 0; i < images.size(); ++i) {
     StoredTexels& out = made.images.emplace_back();
     out.record = view.images[i];
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(view.image_data.data() + out.record.first_byte);
-    out.bytes.assign(bytes, bytes + out.record.size_bytes);
+    const pack::Texels texels = pack::texels_of(view, static_cast<std::uint32_t>(i));
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(texels.bytes().data());
+    out.bytes.assign(bytes, bytes + texels.bytes().size());
     out.texels = images[i].at("texels").get<std::uint64_t>();
     out.squared_error = images[i].at("squared_error").get<std::uint64_t>();
     out.values = images[i].at("values").get<std::uint64_t>();
@@ -84,6 +86,8 @@ bool load_images(Cache& cache, const std::string& name, std::size_t source_count
     fault = read_entry(*entry, source_count, request_count, made);
   } catch (const Json::exception&) {
     fault = "has damaged notes";
+  } catch (const pack::Error&) {
+    fault = "has a damaged image";
   }
   if (fault.empty()) return true;
   made = {};
@@ -98,6 +102,8 @@ void store_images(Cache& cache, const std::string& name, const MadeImages& made)
     pack::Image& record = contents.images.emplace_back(image.record);
     record.name = {};
     record.first_byte = contents.image_data.size();
+    record.stored_bytes = image.bytes.size();
+    record.codec = pack::ImageCodec::raw;
     const auto* bytes = reinterpret_cast<const std::byte*>(image.bytes.data());
     contents.image_data.insert(contents.image_data.end(), bytes, bytes + image.bytes.size());
     contents.image_data.resize((contents.image_data.size() + 15) / 16 * 16);

@@ -204,6 +204,8 @@ std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<Imag
 
 std::uint32_t add_image(StoredTexels&& image, const std::string& name, Strings& strings, pack::Contents& pack) {
   image.record.first_byte = pack.image_data.size();
+  image.record.stored_bytes = image.bytes.size();
+  image.record.codec = pack::ImageCodec::raw;
   image.record.name = strings.add(name);
   pack.images.push_back(image.record);
   const auto* data = reinterpret_cast<const std::byte*>(image.bytes.data());

@@ -83,7 +83,9 @@ Json images(const pack::File& file) {
                     {"height", image.height},
                     {"level_count", image.level_count},
                     {"format", name_of(image.format)},
-                    {"size_bytes", image.size_bytes}});
+                    {"size_bytes", image.size_bytes},
+                    {"stored_bytes", image.stored_bytes},
+                    {"codec", name_of(image.codec)}});
   }
   return list;
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "pack_images.h"
 #include "summary.h"
 
 namespace {
@@ -37,6 +38,11 @@ int main(int argc, char** argv) {
   try {
     using namespace chandelier;
     const pack::File file{path};
+    try {
+      pack::check_images(file.view());
+    } catch (const pack::Error& error) {
+      throw pack::Error(path + ": " + error.what());
+    }
     if (put(json ? inspect::json_report(path, file) : inspect::text_report(path, file, lights))) return 0;
     std::fprintf(stderr, "chandelier-inspect: error: cannot write to standard output\n");
   } catch (const std::exception& error) {

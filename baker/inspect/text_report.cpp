@@ -112,11 +112,14 @@ void put_animations(Out out, const pack::File& file) {
 
 void put_images(Out out, const pack::File& file) {
   const pack::View& view = file.view();
-  fmt::format_to(out, "images     {}, {}\n", view.images.size(), size_text(view.image_data.size()));
+  std::uint64_t bytes = 0;
+  for (const pack::Image& image : view.images) bytes += image.size_bytes;
+  fmt::format_to(out, "images     {}, {}, stored as {}\n", view.images.size(), size_text(bytes),
+                 size_text(view.image_data.size()));
   for (const pack::Image& image : view.images) {
-    fmt::format_to(out, "  {:>5} x {:<5} {:>2} levels  {:<11}  {:>10}  {}\n", image.width, image.height,
-                   image.level_count, name_of(image.format), size_text(image.size_bytes),
-                   printable(file.text(image.name)));
+    fmt::format_to(out, "  {:>5} x {:<5} {:>2} levels  {:<13}  {:>10}  {:<4}  {:>10}  {}\n", image.width, image.height,
+                   image.level_count, name_of(image.format), size_text(image.size_bytes), name_of(image.codec),
+                   size_text(image.stored_bytes), printable(file.text(image.name)));
   }
 }
 

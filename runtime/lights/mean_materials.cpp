@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "image_format.h"
+#include "pack_images.h"
+#include "parallel.h"
 
 namespace chandelier {
 namespace {
@@ -72,10 +74,11 @@ glm::vec3 stored_texel(pack::ImageFormat format, const pack::ImageLevel& level, 
 }
 
 // Linear colour of the smallest level.
-glm::vec3 mean_texel(const pack::View& pack, const pack::Image& image) {
+glm::vec3 mean_texel(const pack::View& pack, uint32_t number) {
+  const pack::Image& image = pack.images[number];
+  const pack::Texels texels = pack::texels_of(pack, number);
   const pack::ImageLevel level = pack::level_of(image, image.level_count - 1);
-  const auto* bytes =
-      reinterpret_cast<const uint8_t*>(pack.image_data.data()) + image.first_byte + image.size_bytes - level.bytes;
+  const auto* bytes = reinterpret_cast<const uint8_t*>(texels.bytes().last(level.bytes).data());
   glm::vec3 sum(0.0f);
   for (uint32_t i = 0; i < level.width * level.height; ++i) {
     glm::vec3 texel = stored_texel(image.format, level, bytes, i);
@@ -86,11 +89,25 @@ glm::vec3 mean_texel(const pack::View& pack, const pack::Image& image) {
   return sum / static_cast<float>(level.width * level.height);
 }
 
+// By the number of the image; of those that no colour is read from nothing.
+std::vector<glm::vec3> mean_texels(const pack::View& pack) {
+  std::vector<uint8_t> is_needed(pack.images.size(), 0);
+  for (const pack::Material& m : pack.materials)
+    for (const uint32_t texture : {m.base_color_texture, m.metallic_roughness_texture, m.emissive_texture})
+      if (texture != pack::none) is_needed[pack.textures[texture].image] = 1;
+  std::vector<glm::vec3> means(pack.images.size());
+  pack::parallel_for(means.size(), 0, [&](size_t i) {
+    if (is_needed[i]) means[i] = mean_texel(pack, static_cast<uint32_t>(i));
+  });
+  return means;
+}
+
 }  // namespace
 
 std::vector<MeanMaterial> mean_materials(const pack::View& pack) {
+  const std::vector<glm::vec3> of_image = mean_texels(pack);
   const auto mean = [&](uint32_t texture) {
-    return texture == pack::none ? glm::vec3(1.0f) : mean_texel(pack, pack.images[pack.textures[texture].image]);
+    return texture == pack::none ? glm::vec3(1.0f) : of_image[pack.textures[texture].image];
   };
   std::vector<MeanMaterial> means;
   for (const pack::Material& m : pack.materials) {

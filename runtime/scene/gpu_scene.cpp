@@ -27,8 +27,10 @@ struct Uploads {
 
 // Nearly all of what is uploaded.
 uint64_t bytes_of(const pack::View& pack) {
-  return pack.positions.size_bytes() + pack.vertex_attributes.size_bytes() + pack.indices.size_bytes() +
-         pack.batches.size_bytes() + pack.batch_instances.size_bytes() + pack.image_data.size_bytes();
+  uint64_t texels = 0;
+  for (const pack::Image& image : pack.images) texels += image.size_bytes;
+  return texels + pack.positions.size_bytes() + pack.vertex_attributes.size_bytes() + pack.indices.size_bytes() +
+         pack.batches.size_bytes() + pack.batch_instances.size_bytes();
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "image_format.h"
+#include "pack_images.h"
 #include "shaders/g_buffer_frag.h"
 
 namespace chandelier {
@@ -43,6 +44,17 @@ std::vector<VkBufferImageCopy> copies_of_levels(const pack::Image& info) {
     offset += level.bytes;
   }
   return copies;
+}
+
+// How many to decode together: at least one, and else no more than this in all.
+uint32_t images_at_once(std::span<const pack::Image> images) {
+  constexpr uint64_t most_bytes = uint64_t{64} << 20;
+  uint64_t bytes = 0;
+  for (uint32_t i = 0; i < images.size(); ++i) {
+    bytes += images[i].size_bytes;
+    if (bytes > most_bytes) return std::max(1u, i);
+  }
+  return static_cast<uint32_t>(images.size());
 }
 
 gpu::Image upload_image(const gpu::Device& device, gpu::Uploader& uploader, const pack::Image& info,
@@ -192,9 +204,14 @@ std::vector<glm::vec3> uv_rows(const pack::View& pack) {
 
 void upload_textures(const gpu::Device& device, gpu::Uploader& uploader, const pack::View& pack, float anisotropy,
                      GpuScene& scene) {
-  for (const pack::Image& image : pack.images)
-    scene.images.push_back(
-        upload_image(device, uploader, image, pack.image_data.subspan(image.first_byte, image.size_bytes)));
+  const auto image_count = static_cast<uint32_t>(pack.images.size());
+  for (uint32_t first = 0; first < image_count;) {
+    const uint32_t count = images_at_once(pack.images.subspan(first));
+    const std::vector<pack::Texels> texels = pack::texels_of(pack, first, count);
+    for (uint32_t i = 0; i < count; ++i)
+      scene.images.push_back(upload_image(device, uploader, pack.images[first + i], texels[i].bytes()));
+    first += count;
+  }
   const std::array<std::byte, 4> white{std::byte{255}, std::byte{255}, std::byte{255}, std::byte{255}};
   scene.images.push_back(upload_image(
       device, uploader, {.width = 1, .height = 1, .level_count = 1, .format = pack::ImageFormat::rgba8_unorm}, white));

@@ -8,6 +8,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "image_format.h"
+#include "pack_images.h"
 
 namespace chandelier::truth {
 namespace {
@@ -73,7 +74,8 @@ AlphaTexture::AlphaTexture(const pack::View& pack, const pack::Texture& texture)
       wrap_v_(texture.wrap_v),
       linear_(texture.mag_filter == pack::Filter::linear) {
   const pack::Image& image = pack.images[texture.image];
-  const auto bytes = pack.image_data.subspan(image.first_byte, image.size_bytes);
+  const pack::Texels texels = pack::texels_of(pack, texture.image);
+  const std::span<const std::byte> bytes = texels.bytes();
   switch (image.format) {
     case pack::ImageFormat::rgba8_srgb:
     case pack::ImageFormat::rgba8_unorm:

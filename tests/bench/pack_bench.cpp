@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "octahedral.h"
 #include "image_format.h"
+#include "octahedral.h"
 #include "pack_checks.h"
 #include "pack_file.h"
 
@@ -88,8 +88,12 @@ void add_hierarchies(Contents& c) {
 void add_images(Contents& c, std::uint32_t count) {
   constexpr std::uint32_t side = 2048;
   for (std::uint32_t i = 0; i < count; ++i) {
-    Image image{c.image_data.size(), 0, side, side, 1, ImageFormat::bc5_unorm, {}};
-    image.size_bytes = image_bytes(image);
+    Image image{.first_byte = c.image_data.size(),
+                .width = side,
+                .height = side,
+                .level_count = 1,
+                .format = ImageFormat::bc5_unorm};
+    image.size_bytes = image.stored_bytes = image_bytes(image);
     for (std::uint64_t at = 0; at < image.size_bytes; ++at) {
       c.image_data.push_back(static_cast<std::byte>(at * 2654435761u >> 13));
     }

@@ -208,10 +208,13 @@ class Options(BakeTool):
         self.assertLess(len(small) * 2, len(raw))
         self.assertEqual({each["codec"] for each in plain["sections"]}, {"raw"})
         self.assertLess({"columns", "zstd"}, {each["codec"] for each in packed["sections"]} | {"triangles", "raw"})
+        self.assertEqual({each["codec"] for each in plain["images"]}, {"raw"})
+        self.assertIn("zstd", {each["codec"] for each in packed["images"]})
         for report in (plain, packed):
             del report["size_bytes"]
-            for section in report["sections"]:
-                del section["stored_bytes"], section["codec"]
+            report["sections"] = [each for each in report["sections"] if each["name"] != "image_data"]  # as images are stored
+            for part in report["sections"] + report["images"]:
+                del part["stored_bytes"], part["codec"]
         self.assertEqual(packed, plain)
 
     def test_voxel_large_clip_draws_nothing_always(self):

@@ -6,16 +6,23 @@
 #include "fuzz_file.h"
 #include "mend_checksums.h"
 #include "pack_file.h"
+#include "pack_images.h"
 
 namespace {
 
 using namespace chandelier;
 
-/// Reads every byte of every section: where one is not there, the sanitizer says so.
+/// Reads every byte of every section and image: where one is not there, the sanitizer says so.
 std::uint64_t sum_of(const pack::File& file) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
     for (const std::byte byte : pack::section_bytes(file.view(), i)) sum += static_cast<std::uint64_t>(byte);
+  }
+  for (std::uint32_t i = 0; i < file.view().images.size(); ++i) {
+    try {
+      for (const std::byte byte : pack::texels_of(file.view(), i).bytes()) sum += static_cast<std::uint64_t>(byte);
+    } catch (const pack::Error&) {
+    }
   }
   for (const pack::Instance& instance : file.view().instances) sum += file.text(instance.name).size();
   return sum;

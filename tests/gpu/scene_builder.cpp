@@ -139,7 +139,7 @@ uint32_t Scene::add_material(const pack::Material& material) {
 uint32_t Scene::add_texture(pack::Image image, std::span<const std::byte> bytes, const UvTransform& uv_transform) {
   contents_.image_data.resize((contents_.image_data.size() + 15) / 16 * 16);
   image.first_byte = contents_.image_data.size();
-  image.size_bytes = bytes.size();
+  image.size_bytes = image.stored_bytes = bytes.size();
   contents_.images.push_back(image);
   contents_.image_data.insert(contents_.image_data.end(), bytes.begin(), bytes.end());
   contents_.textures.push_back({uv_transform, static_cast<uint32_t>(contents_.images.size() - 1),
@@ -229,9 +229,9 @@ pack::Contents Scene::contents() const {
   return contents;
 }
 
-pack::File Scene::open() const {
+pack::File Scene::open(pack::Compression compression) const {
   const pack::test::Folder folder;
-  pack::write(folder / "scene.chandelier", contents());
+  pack::write(folder / "scene.chandelier", contents(), compression);
   return pack::File(folder / "scene.chandelier");
 }
 

@@ -58,7 +58,7 @@ class Scene {
   /// As a pack's.
   pack::Contents contents() const;
   /// Written to a file, which is gone when this returns, and opened.
-  pack::File open() const;
+  pack::File open(pack::Compression compression = pack::Compression::off) const;
 
  private:
   void add_batch(const Mesh& mesh, size_t first, size_t end, uint32_t material, const glm::mat4& world_from_local,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures as shaders see them: block formats, transformed coordinates, what is cut out of shadows, unlit materials.
 #include <cmath>
+#include <filesystem>
 #include <glm/gtc/packing.hpp>
 
 #include "gpu_test.h"
@@ -285,6 +286,62 @@ TEST_F(TexturesTest, HalfFloatsAreCutByTheirAlpha) {
   EXPECT_EQ(at_uv(picture, 0.25f, 0.25f), glm::vec3(half_texel(0)));
   EXPECT_EQ(at_uv(picture, 0.75f, 0.25f), glm::vec3(0.0f));  // alpha 0.25
   EXPECT_EQ(at_uv(picture, 0.25f, 0.75f), glm::vec3(half_texel(2)));
+}
+
+// ---- Images with a codec each
+
+// Two quads with textures, one of a size that a codec makes smaller and one that stays raw.
+Scene two_pictures() {
+  std::vector<uint16_t> halves;
+  for (uint32_t i = 0; i < 64 * 64; ++i)
+    for (uint32_t c = 0; c < 4; ++c)
+      halves.push_back(glm::packHalf1x16(c == 3 ? 1.0f : static_cast<float>(i / 512 + c)));
+  Scene scene;
+  const pack::Image image{.width = 64, .height = 64, .level_count = 1, .format = pack::ImageFormat::rgba16_sfloat};
+  pack::Material left = plain_material(glm::vec3(1.0f)), right = left;
+  left.unlit = right.unlit = 1;
+  left.base_color_texture = scene.add_texture(image, std::as_bytes(std::span(halves)));
+  right.base_color_texture = scene.add_texture(2, 2, {red, green, blue, white});
+  scene.add(quad({-0.5f, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}), scene.add_material(left));
+  scene.add(quad({0.5f, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}), scene.add_material(right));
+  return scene;
+}
+
+TEST_F(TexturesTest, CodedImagesAreDrawnLikeRawOnes) {
+  const RenderSettings settings =
+      settings_for(look({0, 0, 2}, {0, 0, 0}, 2 * std::atan(0.5f)), size_px, size_px, Recipe());
+  Picture pictures[2];
+  for (const bool is_coded : {false, true}) {
+    const pack::File pack = two_pictures().open(is_coded ? pack::Compression::smallest : pack::Compression::off);
+    EXPECT_EQ(pack.view().images[0].codec, is_coded ? pack::ImageCodec::zstd : pack::ImageCodec::raw);
+    EXPECT_EQ(pack.view().images[1].codec, pack::ImageCodec::raw);
+    const World world(pack);
+    Renderer renderer(device(), world);
+    renderer.draw(settings);
+    pictures[is_coded] = renderer.read_back();
+  }
+  EXPECT_EQ(pictures[0].radiance, pictures[1].radiance);
+  EXPECT_EQ(at_uv(pictures[1], 0.25f, 0.55f), glm::vec3(4, 5, 6));
+  EXPECT_EQ(at_uv(pictures[1], 0.9f, 0.1f), glm::vec3(0, 1, 0));
+}
+
+TEST_F(TexturesTest, AnImageThatCannotBeDecodedIsRefusedByName) {
+  const pack::File good = two_pictures().open(pack::Compression::smallest);
+  pack::Contents contents = two_pictures().contents();
+  contents.images.assign(good.view().images.begin(), good.view().images.end());
+  contents.image_data.assign(good.view().image_data.begin(), good.view().image_data.end());
+  contents.image_data[contents.images[0].first_byte + 4] ^= std::byte{0x20};
+  const std::string path = testing::TempDir() + "chandelier-damaged-image";
+  pack::write(path, contents);
+  const pack::File pack(path);
+  std::filesystem::remove(path);
+  const World world(pack);
+  try {
+    const Renderer renderer(device(), world);
+    ADD_FAILURE() << "was drawn";
+  } catch (const pack::Error& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("images[0] ().codec: zstd: ")) << error.what();
+  }
 }
 
 // Four texels of occlusion, a square of none, an unlit one, and background: all stay apart from the light that is

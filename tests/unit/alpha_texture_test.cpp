@@ -15,7 +15,7 @@ AlphaTexture texture_of(pack::Image image, std::vector<uint8_t> bytes, const pac
   contents.image_data.resize(16, std::byte{77});
   for (const uint8_t byte : bytes) contents.image_data.push_back(std::byte{byte});
   image.first_byte = 16;
-  image.size_bytes = bytes.size();
+  image.size_bytes = image.stored_bytes = bytes.size();
   contents.images = {{}, image};
   return AlphaTexture(pack::view_of(contents), texture);
 }

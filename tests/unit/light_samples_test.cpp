@@ -134,8 +134,17 @@ TEST(MeanMaterialTest, TexturesCountByTheirMean) {
   scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
   material.unlit = 1;
   scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
-  const auto means = mean_materials(scene.open().view());
-  ASSERT_EQ(means.size(), 5u);
+  // An image that is stored with a codec: two levels, of which the smaller one counts.
+  std::vector<uint32_t> texels(64 * 64 + 32 * 32, 0xFF00FF00u);
+  std::fill(texels.begin() + 64 * 64, texels.end(), 0xFFFF0000u);
+  const pack::Image large{.width = 64, .height = 64, .level_count = 2, .format = pack::ImageFormat::rgba8_unorm};
+  material.base_color_texture = scene.add_texture(large, std::as_bytes(std::span(texels)));
+  scene.add(test::level_square(glm::vec3(0), 1), scene.add_material(material));
+  const pack::File pack = scene.open(pack::Compression::smallest);
+  EXPECT_EQ(pack.view().images.back().codec, pack::ImageCodec::zstd);
+  const auto means = mean_materials(pack.view());
+  ASSERT_EQ(means.size(), 6u);
+  EXPECT_EQ(means[5].base_color, glm::vec3(0.0f, 0.0f, 1.0f));
   EXPECT_NEAR(glm::distance(means[2].base_color, {0.5f, 0.1f, 0.0f}), 0.0f, 1e-6f);
   EXPECT_EQ(means[3].base_color, glm::vec3(1.0f, 0.125f, 1.0f));
   EXPECT_EQ(means[3].emissive, glm::vec3(8.0f, 0.5f, 200.0f));

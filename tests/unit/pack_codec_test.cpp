@@ -57,8 +57,8 @@ TEST(PackCodec, LongSectionsComeBack) {
     ASSERT_EQ(encoded[info].codec,
               records.data() == bytes_of(contents.positions).data() ? Codec::columns : Codec::triangles);
     Bytes decoded(records.size());
-    const CodedSection coded{encoded[info].codec, section_infos[info].stride_bytes, encoded[info].bytes, decoded};
-    EXPECT_EQ(decode_sections({&coded, 1}).front(), "");
+    const Coded coded{encoded[info].codec, section_infos[info].stride_bytes, encoded[info].bytes, decoded};
+    EXPECT_EQ(decode_all({&coded, 1}).front(), "");
     EXPECT_EQ(std::memcmp(decoded.data(), records.data(), records.size()), 0);
   }
 }
@@ -75,13 +75,12 @@ TEST(PackCodec, NoiseStaysRaw) {
   const Folder folder;
   Contents contents = sample();
   std::mt19937 random(4);
-  contents.image_data.clear();
-  for (int i = 0; i < 100000; ++i) contents.image_data.push_back(static_cast<std::byte>(random()));
+  for (int i = 0; i < 100000; ++i) contents.strings.push_back(static_cast<std::byte>(random()));
   write(folder / "raw.pack", contents);
   write(folder / "small.pack", contents, Compression::smallest);
   const File file(folder / "small.pack");
   for (const SectionEntry& entry : file.table()) {
-    const bool noise = entry.kind == static_cast<std::uint32_t>(Section::image_data);
+    const bool noise = entry.kind == static_cast<std::uint32_t>(Section::strings);
     EXPECT_TRUE(!noise || entry.codec == Codec::raw);
   }
   EXPECT_LE(std::filesystem::file_size(folder / "small.pack"), std::filesystem::file_size(folder / "raw.pack"));
@@ -91,7 +90,7 @@ TEST(PackCodec, NoiseStaysRaw) {
 TEST(PackCodec, NothingAtAllIsStoredLargeEnoughToBeOpened) {
   const Folder folder;
   Contents contents = sheet(2);
-  contents.image_data.resize(50'000'000);
+  contents.strings.resize(50'000'000);
   write(folder / "a.pack", contents, Compression::smallest);
   EXPECT_GE(std::filesystem::file_size(folder / "a.pack"), 50'000'000u / max_decode_ratio);
   EXPECT_LT(std::filesystem::file_size(folder / "a.pack"), 60'000u);
@@ -174,8 +173,8 @@ TEST(PackCodec, DamagedFramesAreRefusedOrGiveOtherRecords) {
     Bytes stored = encoded[info].bytes, decoded(section_bytes(view_of(contents), info).size());
     stored[random() % stored.size()] = static_cast<std::byte>(random());
     if (round % 5 == 0) stored.resize(1 + random() % stored.size());
-    const CodedSection coded{encoded[info].codec, section_infos[info].stride_bytes, stored, decoded};
-    refused += !decode_sections({&coded, 1}).front().empty();
+    const Coded coded{encoded[info].codec, section_infos[info].stride_bytes, stored, decoded};
+    refused += !decode_all({&coded, 1}).front().empty();
   }
   EXPECT_GT(refused, 2000);
 }

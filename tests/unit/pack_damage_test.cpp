@@ -11,6 +11,8 @@
 #include <cstring>
 #include <random>
 
+#include "image_format.h"
+#include "pack_images.h"
 #include "pack_sample.h"
 
 namespace chandelier::pack::test {
@@ -117,16 +119,23 @@ double follow_draws(const File& file) {
       sum += view.positions[vertex].position_ls.x + view.vertex_attributes[vertex].uv0.x;
     }
     const Material& material = view.materials[batch.material];
-    if (material.normal_texture != none) {
-      const Image& image = view.images[view.textures[material.normal_texture].image];
-      for (std::uint64_t i = 0; i < image.size_bytes; ++i)
-        sum += static_cast<double>(view.image_data[image.first_byte + i]);
-    }
+    if (material.normal_texture != none) sum += view.images[view.textures[material.normal_texture].image].width;
     for (const char c : file.text(material.name)) sum += c;
   }
   for (const Light& light : view.lights) {
     sum += light.intensity + static_cast<double>(file.text(light.name).size());
     if (light.voxel != none) sum += view.voxel_cells[light.voxel].run_count;
+  }
+  return sum;
+}
+
+/// Throws Error where an image cannot be decoded.
+double follow_images(const View& view) {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < view.images.size(); ++i) {
+    const Texels texels = texels_of(view, i);
+    for (const std::byte byte : texels.bytes()) sum += static_cast<double>(byte);
+    if (texels.bytes().size() != image_bytes(view.images[i])) return NAN;
   }
   return sum;
 }
@@ -197,7 +206,8 @@ double follow_motion(const View& view) {
 
 /// Follows every reference of an opened pack, as a renderer would. A sanitizer sees it if one leads astray.
 double follow(const File& file) {
-  return follow_draws(file) + follow_hierarchies(file.view()) + follow_voxels(file.view()) + follow_motion(file.view());
+  return follow_draws(file) + follow_images(file.view()) + follow_hierarchies(file.view()) +
+         follow_voxels(file.view()) + follow_motion(file.view());
 }
 
 // With right checksums a change may leave a valid pack. It must then be one that can be used; else it must be refused.

@@ -7,6 +7,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import numpy as np
+import pack_schema
+import xxhash
+
 
 def inspect(*arguments, **more):
     return subprocess.run([os.environ["CHANDELIER_INSPECT"], *arguments], capture_output=True, text=True, **more)
@@ -34,7 +38,8 @@ class PackInspect(unittest.TestCase):
         self.assertEqual(report["batches"], {"count": 3, "drawn": 5, "closed": 0, "triangles": {"min": 1, "mean": 1, "max": 1}})
         self.assertEqual([m["name"] for m in report["materials"]], ["stone", "Blätter"])
         self.assertEqual(report["images"][0], {"name": "bricks.png", "width": 4, "height": 2, "level_count": 3,
-                                               "format": "rgba8_srgb", "size_bytes": 44})
+                                               "format": "rgba8_srgb", "size_bytes": 44, "stored_bytes": 44, "codec": "raw"})
+        self.assertEqual([image["format"] for image in report["images"]], ["rgba8_srgb", "rgba8_unorm", "rgba16_sfloat"])
         self.assertEqual([(light["name"], light["type"], light["range_source"]) for light in report["lights"]],
                          [("bulb", "point", "authored"), ("torch", "spot", "derived"),
                           ("sun", "directional", "unbounded")])
@@ -82,6 +87,31 @@ class PackInspect(unittest.TestCase):
         self.path.write_bytes(data[:-1])
         self.assert_error(inspect(self.path, "--json"), self.path,
                           f"header.file_bytes: {len(data)} where the file has {len(data) - 1}")
+
+    def damage_image(self, number):
+        """Turns over the first byte of a stored image, with right checksums."""
+        data = np.fromfile(self.path, np.uint8)
+        header = data[:pack_schema.FileHeader.itemsize].view(pack_schema.FileHeader)
+        end = pack_schema.FileHeader.itemsize + int(header["section_count"][0]) * pack_schema.SectionEntry.itemsize
+        table = data[pack_schema.FileHeader.itemsize:end].view(pack_schema.SectionEntry)
+        entries = {pack_schema.SECTIONS[int(entry["kind"])][0]: entry for entry in table}
+        first, size = (int(entries["image_data"][name]) for name in ("offset_bytes", "size_bytes"))
+        data[first + int(pack_schema.read_pack(self.path).images[number]["first_byte"])] ^= 0xFF
+        entries["image_data"]["checksum"] = xxhash.xxh3_64_intdigest(data[first:first + size])
+        header["table_checksum"] = xxhash.xxh3_64_intdigest(table)
+        data.tofile(self.path)
+
+    def test_images_are_decoded_too(self):
+        subprocess.run([os.environ["CHANDELIER_WRITE_SAMPLE"], self.path, "compressed"], check=True)
+        report = json.loads(inspect(self.path, "--json").stdout)
+        self.assertEqual([image["codec"] for image in report["images"]], ["raw", "raw", "zstd"])
+        self.assertEqual(report["images"][2]["size_bytes"], 512)
+        self.assertLess(report["images"][2]["stored_bytes"], 100)
+        self.assertRegex(inspect(self.path).stdout, r"images     3, 560 bytes, stored as \d+ bytes\n(.*\n){2}.*zstd.*sky\.exr")
+        self.damage_image(2)
+        run = inspect(self.path)
+        self.assertEqual((run.returncode, run.stdout), (1, ""))
+        self.assertRegex(run.stderr, f"^chandelier-inspect: error: {self.path}: images\\[2\\] \\(sky.exr\\).codec: zstd: .*\n$")
 
     def test_usage(self):
         for arguments in ([], ["a", "b"], [str(self.path), "--no-such-option"]):

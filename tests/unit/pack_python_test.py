@@ -29,8 +29,8 @@ class PackPython(PackFile):
     def test_values(self):
         pack = pack_schema.read_pack(self.path)
         self.assertEqual({name: len(getattr(pack, name)) for name, _ in pack_schema.SECTIONS.values()}, {
-            "bake_info": 1, "strings": 89, "positions": 7, "vertex_attributes": 7, "indices": 9, "batches": 3,
-            "instances": 3, "batch_instances": 5, "materials": 2, "textures": 2, "images": 2, "image_data": 52,
+            "bake_info": 1, "strings": 96, "positions": 7, "vertex_attributes": 7, "indices": 9, "batches": 3,
+            "instances": 3, "batch_instances": 5, "materials": 2, "textures": 2, "images": 3, "image_data": 576,
             "lights": 3, "cameras": 1, "meshes": 2, "batch_bvh": 3, "batch_bvh_items": 4, "instance_bvh": 3,
             "instance_bvh_items": 2, "triangle_bvh": 4, "triangle_bvh_items": 3, "triangle_bvh_areas": 4,
             "light_bvh": 3, "voxel_grid": 1, "voxel_cells": 2, "voxel_runs": 4, "voxel_indices": 24,
@@ -51,7 +51,9 @@ class PackPython(PackFile):
         self.assertEqual([pack.text(node["name"]) for node in pack.nodes], ["pole", "cloth"])
         self.assertEqual([pack_schema.INTERPOLATION[i] for i in pack.animation_channels["interpolation"]],
                          ["linear", "step", "cubic_spline"])
-        self.assertEqual(pack.image_data.tolist(), [i * 5 % 256 for i in range(52)])
+        self.assertEqual(pack.texels(0).tolist(), [i * 5 % 256 for i in range(44)])
+        self.assertEqual(pack.texels(1).tolist(), [240, 245, 250, 255])
+        self.assertEqual(pack.texels(2).view("<f2")[::32].tolist(), [1 + i / 1024 for i in range(8)])
 
     def test_names_and_enums(self):
         pack = pack_schema.read_pack(self.path)
@@ -104,6 +106,16 @@ class Compressed(PackFile):
         self.assertLess(np.abs(heights - 300 * np.sin(x / 9) * np.cos(y / 7)).max(), 0.6)
         self.assertEqual(pack.vertex_attributes["normal_ls"].tolist(), [x * 7919 for y in range(100) for x in range(100)])
         self.assertEqual(pack.vertex_attributes["uv0"][:, 1].tolist(), [y / 16384 for y in range(100) for x in range(100)])
+
+    def test_images_are_decoded_one_by_one(self):
+        expected = pack_schema.read_pack(self.path)
+        compressed = self.path.with_suffix(".small")
+        subprocess.run([os.environ["CHANDELIER_WRITE_SAMPLE"], compressed, "compressed"], check=True)
+        pack = pack_schema.read_pack(compressed)
+        self.assertEqual([pack_schema.IMAGE_CODEC[codec] for codec in pack.images["codec"]], ["raw", "raw", "zstd"])
+        self.assertLess(pack.images["stored_bytes"][2], 100)
+        for i in range(3):
+            self.assertEqual(pack.texels(i).tolist(), expected.texels(i).tolist())
 
     def test_damaged_frames_are_refused(self):
         self.write_compressed("points")

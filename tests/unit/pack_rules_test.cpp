@@ -18,8 +18,7 @@ constexpr float inf = std::numeric_limits<float>::infinity();
 /// Makes the second image a texel of half floats.
 void set_halves(Contents& c, const std::array<std::uint16_t, 4>& halves) {
   c.images[1].format = ImageFormat::rgba16_sfloat;
-  c.images[1].size_bytes = sizeof(halves);
-  c.image_data.resize(c.images[1].first_byte + sizeof(halves));
+  c.images[1].size_bytes = c.images[1].stored_bytes = sizeof(halves);
   std::memcpy(&c.image_data[c.images[1].first_byte], halves.data(), sizeof(halves));
 }
 
@@ -49,14 +48,14 @@ const Breach breaches[] = {
     {"RunWraps", [](Contents& c) { c.batches[0].first_index = 0xFFFFFFFFu; },
      "batches[0].first_index: 4294967295 plus index_count 3 is past the 9 indices"},
     {"LongRunWraps", [](Contents& c) { c.images[0].first_byte = ~std::uint64_t{15}; },
-     "images[0].first_byte: 18446744073709551600 plus size_bytes 44 is past the 52 image_data"},
+     "images[0].first_byte: 18446744073709551600 plus stored_bytes 44 is past the 576 image_data"},
     {"String", [](Contents& c) { c.materials[1].name.size_bytes = 1000; },
-     "materials[1].name.offset_bytes: 33 plus size_bytes 1000 is past the 89 strings"},
+     "materials[1].name.offset_bytes: 33 plus size_bytes 1000 is past the 96 strings"},
     {"StringWraps",
      [](Contents& c) {
        c.bake_info.source = {2, 0xFFFFFFFEu};
      },
-     "bake_info.source.offset_bytes: 2 plus size_bytes 4294967294 is past the 89 strings"},
+     "bake_info.source.offset_bytes: 2 plus size_bytes 4294967294 is past the 96 strings"},
     {"LargeBatch",
      [](Contents& c) {
        c.indices.resize(1539);
@@ -106,6 +105,24 @@ const Breach breaches[] = {
        set_halves(c, {0, 0, 0, 0xBC00});
      },
      "images[1]: half float 3 is negative or not finite (48128)"},
+    {"ImageCodec", [](Contents& c) { c.images[1].codec = ImageCodec{2}; }, "images[1].codec: 2 is no ImageCodec"},
+    {"RawImageOfAnotherSize", [](Contents& c) { c.images[1].stored_bytes = 3; },
+     "images[1].stored_bytes: 3 of a raw image of 4 bytes"},
+    {"CodedImageOfNoBytes",
+     [](Contents& c) {
+       c.images[1].codec = ImageCodec::zstd;
+       c.images[1].stored_bytes = 0;
+     },
+     "images[1].size_bytes: 4 are too many for the stored 0"},
+    {"CodedImageTooLarge",
+     [](Contents& c) {
+       c.images[1].codec = ImageCodec::zstd;
+       c.images[1].width = c.images[1].height = 256;
+       c.images[1].size_bytes = 262144;
+     },
+     "images[1].size_bytes: 262144 are too many for the stored 4"},
+    {"ImagesOverlap", [](Contents& c) { c.images[1].first_byte = 32; },
+     "images[1].first_byte: 32 is before the end of the image before, 44"},
     {"LargestImage",
      [](Contents& c) {
        c.images[0].width = c.images[0].height = 16384;

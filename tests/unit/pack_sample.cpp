@@ -69,9 +69,17 @@ void add_materials(Contents& c) {
   c.textures = {
       {{{{1, 0, 0}, {0, 1, 0}}}, 0, Wrap::repeat, Wrap::mirrored_repeat, Filter::linear, Filter::nearest},
       {{{{2, 0, 0.5f}, {0, 2, -0.25f}}}, 1, Wrap::clamp_to_edge, Wrap::repeat, Filter::linear, Filter::linear}};
-  c.images.push_back({0, 44, 4, 2, 3, ImageFormat::rgba8_srgb, add_string(c, "bricks.png")});  // 4×2, 2×1, 1×1
-  c.images.push_back({48, 4, 1, 1, 1, ImageFormat::rgba8_unorm, add_string(c, "flat")});
+  const auto raw = ImageCodec::raw;
+  const auto bricks = add_string(c, "bricks.png"), flat = add_string(c, "flat"), sky = add_string(c, "sky.exr");
+  c.images.push_back({0, 44, 44, 4, 2, 3, ImageFormat::rgba8_srgb, raw, 0, bricks});  // 4×2, 2×1, 1×1
+  c.images.push_back({48, 4, 4, 1, 1, 1, ImageFormat::rgba8_unorm, raw, 0, flat});
+  c.images.push_back({64, 512, 512, 8, 8, 1, ImageFormat::rgba16_sfloat, raw, 0, sky});
   for (int i = 0; i < 52; ++i) c.image_data.push_back(static_cast<std::byte>(i * 5));
+  c.image_data.resize(64);
+  for (int i = 0; i < 256; ++i) {  // half floats: 1 and a little more
+    c.image_data.push_back(static_cast<std::byte>(i / 32));
+    c.image_data.push_back(std::byte{0x3C});
+  }
 }
 
 void add_lights(Contents& c) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the sample pack to the path it is given, for tests in other languages; with `sheet` or `points` as a second
-// argument the compressed sheet, with its triangles or without.
+// Writes the sample pack to the path it is given, for tests in other languages; with `compressed`
+// as a second argument compressed; with `sheet` or `points` the compressed sheet, with its triangles or without.
 #include <cstdio>
 #include <string>
 
@@ -11,6 +11,7 @@ namespace {
 void write_named(const char* path, const std::string& name) {
   using namespace chandelier::pack;
   if (name == "sample") return write(path, test::sample());
+  if (name == "compressed") return write(path, test::sample(), Compression::smallest);
   Contents sheet = test::sheet(name == "points" ? 100 : 300);
   if (name == "points") sheet.indices.clear();
   write(path, sheet, Compression::smallest);

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pack_images.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "image_format.h"
+#include "pack_checks_text.h"
+#include "pack_codec.h"
+#include "pack_file.h"
+#include "parallel.h"
+
+namespace chandelier::pack {
+namespace {
+
+constexpr std::size_t alignment = 16;  // of first_byte
+
+std::span<const std::byte> stored_of(const View& view, const Image& image) {
+  return view.image_data.subspan(image.first_byte, image.stored_bytes);
+}
+
+[[noreturn]] void fail(const View& view, std::size_t image, const std::string& what) {
+  const StringRef& name = view.images[image].name;
+  const auto* text = reinterpret_cast<const char*>(view.strings.data()) + name.offset_bytes;
+  throw Error(at("images", image) + " (" + std::string(text, name.size_bytes) + ")" + what);
+}
+
+bool lie_one_after_another(const View& view) {
+  std::uint64_t end = 0;
+  for (const Image& image : view.images) {
+    const std::uint64_t size = view.image_data.size();
+    if (image.first_byte < end || image.first_byte > size || image.stored_bytes > size - image.first_byte) return false;
+    end = image.first_byte + image.stored_bytes;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string half_float_fault(std::span<const std::byte> texels) {
+  for (std::size_t i = 0; i + 1 < texels.size(); i += 2) {
+    std::uint16_t bits = 0;
+    std::memcpy(&bits, &texels[i], sizeof(bits));
+    if (is_half_texel(bits)) continue;
+    return ": half float " + text(std::uint64_t{i / 2}) + " is negative or not finite (" + text(std::uint64_t{bits}) +
+           ")";
+  }
+  return {};
+}
+
+std::vector<Texels> texels_of(const View& view, std::uint32_t first, std::uint32_t count, std::size_t most_threads) {
+  std::vector<Texels> texels;
+  std::vector<Coded> coded;
+  std::vector<std::uint32_t> number;  // of each of `coded`
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const Image& image = view.images[i];
+    if (image.codec == ImageCodec::raw) {
+      texels.emplace_back(stored_of(view, image));
+      continue;
+    }
+    auto decoded = std::make_unique_for_overwrite<std::byte[]>(image.size_bytes);
+    coded.push_back({Codec::zstd, 1, stored_of(view, image), {decoded.get(), image.size_bytes}});
+    number.push_back(i);
+    texels.emplace_back(std::move(decoded), image.size_bytes);
+  }
+  const std::vector<std::string> faults = decode_all(coded, most_threads);
+  for (std::size_t i = 0; i < coded.size(); ++i) {
+    const Image& image = view.images[number[i]];
+    if (!faults[i].empty()) fail(view, number[i], ".codec: " + std::string(name_of(image.codec)) + ": " + faults[i]);
+    if (image.format != ImageFormat::rgba16_sfloat) continue;
+    if (const std::string line = half_float_fault(coded[i].records); !line.empty()) fail(view, number[i], line);
+  }
+  return texels;
+}
+
+Texels texels_of(const View& view, std::uint32_t image) {
+  return std::move(texels_of(view, image, 1, 1).front());
+}
+
+void check_images(const View& view, std::size_t most_threads) {
+  parallel_for(view.images.size(), most_threads,
+               [&](std::size_t i) { texels_of(view, static_cast<std::uint32_t>(i)); });
+}
+
+EncodedImages encode_images(const View& view, std::size_t most_threads) {
+  EncodedImages out;
+  if (!lie_one_after_another(view)) return out;
+  std::vector<std::span<const std::byte>> raw;
+  for (const Image& image : view.images) {
+    raw.push_back(image.codec == ImageCodec::raw ? stored_of(view, image) : std::span<const std::byte>());
+  }
+  const std::vector<Encoded> encoded = encode_images(raw, most_threads);
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    Image& image = out.images.emplace_back(view.images[i]);
+    std::span<const std::byte> stored = stored_of(view, image);
+    if (encoded[i].codec == Codec::zstd) {
+      image.codec = ImageCodec::zstd;
+      stored = encoded[i].bytes;
+    }
+    out.image_data.resize((out.image_data.size() + alignment - 1) / alignment * alignment);
+    image.first_byte = out.image_data.size();
+    image.stored_bytes = stored.size();
+    out.image_data.insert(out.image_data.end(), stored.begin(), stored.end());
+  }
+  return out;
+}
+
+}  // namespace chandelier::pack
