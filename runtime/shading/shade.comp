@@ -12,6 +12,9 @@ float cone_falloff(FrameLight light, vec3 to_light) {
   return cone * cone;
 }
 
+// Read once: where threads may be masked, as in a loop, Mesa 22 reads a buffer for each thread by itself.
+vec3 eye_ws = view.eye_ws;
+
 // A light's share at p, which is from the eye, before visibility. What is not asked of a light is not read: all threads ask alike for its type.
 vec3 unshadowed(uint number, Reflector r, vec3 geometric_normal, vec3 p) {
   vec3 to_light;
@@ -20,7 +23,7 @@ vec3 unshadowed(uint number, Reflector r, vec3 geometric_normal, vec3 p) {
   if (type == LIGHT_TYPE_DIRECTIONAL) {
     to_light = -lights[number].direction_ws;
   } else {
-    vec3 d = (lights[number].position_ws - view.eye_ws) - p;
+    vec3 d = (lights[number].position_ws - eye_ws) - p;
     float distance2 = dot(d, d);
     float range_m = lights[number].range_m;
     to_light = d * inversesqrt(max(distance2, 1e-12));
