@@ -73,9 +73,8 @@ bool all_lit(Search found) { return found.made && found.blockers.count == 0u; }
 bool all_dark(Search found) { return found.made && found.blockers.count == found.blockers.taps; }
 bool asks_taps(Search found) { return !all_lit(found) && !all_dark(found); }
 
-// Most where there is a penumbra; no fewer than cube_pcf() can read where it is the block's other pixels that ask.
-const uint PENUMBRA_TAPS = 2u * DISC_TAPS;
-uint taps_after(Search found) { return !asks_taps(found) ? 4u : found.made ? PENUMBRA_TAPS : DISC_TAPS; }
+// No fewer than cube_pcf() can read where it is the block's other pixels that ask.
+uint taps_after(Search found) { return asks_taps(found) ? DISC_TAPS : 4u; }
 
 // `own` is what the taps say; where the search said enough, that counts.
 float lit_after(Search found, Receiver r, uint mates, Lit own, float radius_m) {
