@@ -101,7 +101,7 @@ CullPipelines make_cull_pipelines(const gpu::Device& device, Cull answer, bool k
                                       {{"cull_step", static_cast<uint32_t>(number)}, {"keep_order", keep_order}});
   };
   return {gpu::make_compute_pipeline(device, block_boxes_comp), step(Step::find), step(Step::count),
-          gpu::make_compute_pipeline(device, plan_draws_comp, {{"keep_order", keep_order}}), step(Step::append)};
+          gpu::make_compute_pipeline(device, plan_draws_comp, {{"keep_order", keep_order}}), step(Step::append), keep_order};
 }
 
 CullState make_cull_state(const gpu::Device& device, gpu::Uploader& uploader, const DrawLists& lists) {
@@ -174,7 +174,7 @@ uint32_t record_cull(gpu::Commands cmd, const gpu::Device& device, const CullPip
   bind_plan(cmd, pipelines.plan, input, state);
   cmd->vkCmdDispatch(cmd, 1, 1, 1);
   wait_for_dispatch(cmd);
-  record_append(cmd, pipelines, scene, input, state, 0);
+  if (pipelines.keep_order) record_append(cmd, pipelines, scene, input, state, 0);
   return passes_at_most(state.lists, state.slots, input.view_count);
 }
 

@@ -54,48 +54,8 @@ void find_pairs() {
   }
 }
 
-// One thread per batch instance of a pair; a work group takes pairs in turns. Counts are added to the frame's counters.
-// Where order is not kept, a pair's place among its list's draws is had on the way.
-shared uint pair_draws, pair_triangles;
-
-void add_triangles(uint count) {
-  uint before = atomicAdd(counters[cull.group].triangles, count);
-  if (before + count < before) atomicAdd(counters[cull.group].triangles_high, 1u);
-}
-
-void finish_pair(uint number, uint list) {
-  pairs[number].draw_count = pair_draws;
-  if (pair_draws == 0u) return;
-  if (keep_order == 0u) pairs[number].first_draw = atomicAdd(totals[1u + list], pair_draws);
-  atomicAdd(counters[cull.group].draws, pair_draws);
-  add_triangles(pair_triangles);
-}
-
-void count_draws() {
-  uint thread = gl_LocalInvocationIndex;
-  uint number = gl_WorkGroupID.x, end = totals[0];
-  if (number < end) do {
-    if (thread == 0u) pair_draws = pair_triangles = 0u;
-    barrier();
-    BlockPair pair = pairs[number];
-    BatchBlock block = blocks[pair.block];
-    if (thread < block.count && pair.view_bits != 0u) {
-      BatchInstance candidate = batch_instances[order[block.first + thread]];
-      uint count = bitCount(surviving_views(pair, candidate));
-      if (count != 0u) {
-        atomicAdd(pair_draws, count);
-        atomicAdd(pair_triangles, count * (batches[candidate.batch].index_count / 3u));
-      }
-    }
-    barrier();
-    if (thread == 0u) finish_pair(number, block.list);
-    barrier();
-    number += gl_NumWorkGroups.x;
-  } while (number < end);
-}
-
-// The draws of one pass. A pair's draws go view by view, within a view in the order of its batch instances.
-// Three counts in each word, of views 0 to 2 and 3 to 5; none exceeds CULL_GROUP_SIZE.
+// The draws of a pair in one pass: view by view, within a view in the order of its batch instances. For all threads of a work
+// group at once. Three counts in each word, of views 0 to 2 and 3 to 5; none exceeds CULL_GROUP_SIZE.
 const uint COUNT_BITS = 10u;
 shared uvec2 sums[2][CULL_GROUP_SIZE];
 
@@ -138,21 +98,57 @@ void write_draw(uint list, uint place, uint view, BatchInstance drawn) {
   draws[slot] = CasterDraw(batch.index_count, 1u, batch.first_index, 0u, slot, view, drawn.instance, batch.material);
 }
 
-void append(BlockPair pair, BatchBlock block) {
-  uint thread = gl_LocalInvocationIndex;
-  BatchInstance candidate = batch_instances[order[block.first + min(thread, block.count - 1u)]];
-  uint bits = thread < block.count ? surviving_views(pair, candidate) : 0u;
+// `bits`: the views that this thread's batch instance is drawn in; `place`: of the pair's first draw among those of the list.
+void append(uint list, uint place, uint first_view, BatchInstance candidate, uint bits) {
   uvec2 own = packed_bits(bits);
   uvec2 before = sum_up_to_thread(own) - own;
   uvec2 all = sums[0][CULL_GROUP_SIZE - 1u];
   barrier();
-  uint place = pair.first_draw - draws_before_list(block.list);
   uint view = 0u;
   do {
-    if ((bits >> view & 1u) != 0u)
-      write_draw(block.list, place + count_of(before, view), pair.first_view + view, candidate);
+    if ((bits >> view & 1u) != 0u) write_draw(list, place + count_of(before, view), first_view + view, candidate);
     place += count_of(all, view);
   } while (++view < 6u);
+}
+
+// One thread per batch instance of a pair; a work group takes pairs in turns. Counts are added to the frame's counters.
+// Where order is not kept, a pair's place among its list's draws is had on the way, and its draws of the first pass are written.
+shared uint pair_draws, pair_triangles, pair_place;
+
+void add_triangles(uint count) {
+  uint before = atomicAdd(counters[cull.group].triangles, count);
+  if (before + count < before) atomicAdd(counters[cull.group].triangles_high, 1u);
+}
+
+void finish_pair(uint number, uint list) {
+  pairs[number].draw_count = pair_draws;
+  if (pair_draws == 0u) return;
+  if (keep_order == 0u) pairs[number].first_draw = pair_place = atomicAdd(totals[1u + list], pair_draws);
+  atomicAdd(counters[cull.group].draws, pair_draws);
+  add_triangles(pair_triangles);
+}
+
+void count_draws() {
+  uint thread = gl_LocalInvocationIndex;
+  uint number = gl_WorkGroupID.x, end = totals[0];
+  if (number < end) do {
+    if (thread == 0u) pair_draws = pair_triangles = 0u;
+    barrier();
+    BlockPair pair = pairs[number];
+    BatchBlock block = blocks[pair.block];
+    BatchInstance candidate = batch_instances[order[block.first + min(thread, block.count - 1u)]];
+    uint bits = thread < block.count ? surviving_views(pair, candidate) : 0u;
+    if (bits != 0u) {
+      atomicAdd(pair_draws, bitCount(bits));
+      atomicAdd(pair_triangles, bitCount(bits) * (batches[candidate.batch].index_count / 3u));
+    }
+    barrier();
+    if (thread == 0u) finish_pair(number, block.list);
+    barrier();
+    if (keep_order == 0u && pair_draws != 0u) append(block.list, pair_place, pair.first_view, candidate, bits);
+    barrier();
+    number += gl_NumWorkGroups.x;
+  } while (number < end);
 }
 
 // Does this pass draw any of the pair's draws?
@@ -162,11 +158,16 @@ bool is_in_pass(BlockPair pair, uint list) {
 }
 
 void append_draws() {
+  uint thread = gl_LocalInvocationIndex;
   uint number = gl_WorkGroupID.x, end = totals[0];
   if (number < end) do {
     BlockPair pair = pairs[number];
     BatchBlock block = blocks[pair.block];
-    if (is_in_pass(pair, block.list)) append(pair, block);
+    if (is_in_pass(pair, block.list)) {
+      BatchInstance candidate = batch_instances[order[block.first + min(thread, block.count - 1u)]];
+      uint bits = thread < block.count ? surviving_views(pair, candidate) : 0u;
+      append(block.list, pair.first_draw - draws_before_list(block.list), pair.first_view, candidate, bits);
+    }
     number += gl_NumWorkGroups.x;
   } while (number < end);
 }

@@ -18,6 +18,7 @@ namespace chandelier {
 /// The dispatches for one answer, and for one way to order draws.
 struct CullPipelines {
   gpu::Pipeline boxes, find, count, plan, append;
+  bool keep_order;
 };
 /// `keep_order`: of one view, whose draws keep the order of their batch instances.
 CullPipelines make_cull_pipelines(const gpu::Device& device, Cull answer, bool keep_order);

@@ -2,9 +2,10 @@
 // What the dispatches of the cull stage read and write. In order:
 //   block_boxes.comp            a box around each block of batch instances
 //   cull_ANSWER.comp, FIND      which blocks may be seen from which maps
-//   cull_ANSWER.comp, COUNT     how many of their batch instances are, in how many views
+//   cull_ANSWER.comp, COUNT     how many of their batch instances are, in how many views; where order is not kept, the draws of
+//                               the first pass
 //   plan_draws.comp             where their draws go, and in which pass
-//   cull_ANSWER.comp, APPEND    the draws of one pass
+//   cull_ANSWER.comp, APPEND    the draws of another pass
 #extension GL_GOOGLE_include_directive : require
 #include "frame_schema.glsl"
 #include "pack_schema.glsl"
