@@ -65,7 +65,7 @@ glm::vec3 tap_place(const Receiver& receiver, const glm::vec2& at_m) {
   return receiver.center_ws + d * std::min(1.0f, receiver.distance_m / glm::length(d));
 }
 
-// filter_pcf.glsl:cube_pcf
+// disc_taps.glsl:lit_by_taps
 float pcf(const LightSamples& samples, uint32_t center, const Receiver& receiver, float radius_m) {
   uint32_t lit = 0;
   for (const glm::vec2& tap : poisson_disc) lit += samples.is_lit(center, tap_place(receiver, radius_m * tap)) ? 1 : 0;

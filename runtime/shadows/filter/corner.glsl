@@ -31,7 +31,7 @@ Verdict verdict(Texels around, Sight here, Spot spot, vec2 uv, vec3 plane, bool 
   return Verdict(hidden, shown && before, beside);
 }
 
-Verdict cube_verdict(CubeDisc disc, vec2 way_to_lit, float radius_m) {
+Verdict verdict_of(CubeDisc disc, vec2 way_to_lit, float radius_m) {
   vec3 n = cross(disc.axes[0], disc.axes[1]);
   vec3 d = disc.surface;
   Spot spot = cube_spot(disc.near_m, disc.square.size, d, n, d);
@@ -50,7 +50,7 @@ Verdict cube_verdict(CubeDisc disc, vec2 way_to_lit, float radius_m) {
   return verdict(around, here, spot, on_face.xy / on_face.z, to_face(d, plane), own_aside, beside);
 }
 
-Verdict cascade_verdict(CascadeDisc disc, vec2 way_to_lit, float radius_m) {
+Verdict verdict_of(CascadeDisc disc, vec2 way_to_lit, float radius_m) {
   Texels around = texels_at(disc.square, disc.uv, disc.layer);
   Sight here = sight(around, disc.spot);
   vec2 aside = (disc.axes * (any(here.own) ? -way_to_lit : way_to_lit)).xy;

@@ -91,60 +91,23 @@ vec2 way_to_lit(TapSums sums, uint taps) {
   return sums.lit_turns - sums.lit / float(taps) * sums.turns + vec2(1e-6, 0.0);
 }
 
-// Of so many taps, a multiple of four. Where they disagree, once more for each surface that is found beside.
-Lit cube_pcf(CubeDisc disc, float radius_m, uint taps) {
-  TapSums sums;
-  bool again = false;
-  uint pass = 0u;
-  do {
-    sums = NO_TAPS;
-    vec2 turn = vec2(1.0, 0.0);
-    uint i = 0u;
-    do {
-      for (uint k = 0u; k < 4u; ++k, ++i) {
-        Tap tap = cube_tap(disc, radius_m * tap_ring(i, taps) * turn);
-        add_tap(sums, lit(disc, tap), turn, 2u * i >= taps);
-        turn = NEXT_TURN * turn;
-      }
-    } while (i < taps);
-    again = false;
-    if (sums.lit > 0.0 && sums.lit < float(taps) && pass < MOST_BESIDE) {
-      Verdict verdict = cube_verdict(disc, way_to_lit(sums, taps), radius_m);
-      if (verdict.hidden && disc.lone) sums = NO_TAPS;
-      disc.beside = verdict.beside;
-      again = verdict.again;
-    }
-    ++pass;
-  } while (again);
-  return lit_disc(sums, taps, disc.axes, radius_m);
-}
+struct Blockers {
+  uint count;
+  float sum;  // of their blocker_place()
+  uint taps;
+};
 
-Lit cascade_pcf(CascadeDisc disc, mat2x3 axes, float radius_m, uint taps) {
-  TapSums sums;
-  bool again = false;
-  uint pass = 0u;
-  do {
-    sums = NO_TAPS;
-    vec2 turn = vec2(1.0, 0.0);
-    uint i = 0u;
-    do {
-      for (uint k = 0u; k < 4u; ++k, ++i) {
-        Tap tap = cascade_tap(disc, radius_m * tap_ring(i, taps) * turn);
-        add_tap(sums, lit(disc, tap), turn, 2u * i >= taps);
-        turn = NEXT_TURN * turn;
-      }
-    } while (i < taps);
-    again = false;
-    if (sums.lit > 0.0 && sums.lit < float(taps) && pass < MOST_BESIDE) {
-      Verdict verdict = cascade_verdict(disc, way_to_lit(sums, taps), radius_m);
-      if (verdict.hidden && disc.lone) sums = NO_TAPS;
-      disc.beside = verdict.beside;
-      again = verdict.again;
-    }
-    ++pass;
-  } while (again);
-  return lit_disc(sums, taps, axes, radius_m);
-}
+// Where a blocker stands. For a cube: the part of the way from the centre to the plane. For a cascade: its distance from the plane
+// along the light's way, of the cascade's whole depth.
+float blocker_place(CubeDisc disc, Tap tap, float blocker) { return tap.depth / blocker; }
+float blocker_place(CascadeDisc disc, Tap tap, float blocker) { return blocker - tap.depth; }
+
+#define DISC CubeDisc
+#include "shadows/filter/disc_taps.glsl"
+#undef DISC
+#define DISC CascadeDisc
+#include "shadows/filter/disc_taps.glsl"
+#undef DISC
 
 // The lit part of a disc, from this pixel's taps and from those of its block's that lie nearer than half the radius. Theirs
 // are put right by how much changes on the way.
@@ -173,11 +136,11 @@ float visibility_pcf(ShadowMap map, Receiver r) {
   if (is_projected(map, PROJECTION_CASCADE)) {
     ShadowView cascade = views[cascade_at(map, r.p)];
     float cascade_radius_m = max(SMOOTHING_TEXELS * cascade.texel_m, PENUMBRA_PER_RADIUS * map.filter_radius_m);
-    Lit own = cascade_pcf(cascade_disc(map, cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m, DISC_TAPS);
+    Lit own = lit_by_taps(cascade_disc(map, cascade, r.p, r.n, r.axes), r.axes, cascade_radius_m, DISC_TAPS);
     return lit_of_block(r.p, facing_mates(r, depth_per_m(cascade)), own, cascade_radius_m);
   }
   float radius_m = pcf_radius(map, r.p);
-  Lit own = cube_pcf(cube_disc(map, r.p, r.n, r.axes, radius_m), radius_m, DISC_TAPS);
+  Lit own = lit_by_taps(cube_disc(map, r.p, r.n, r.axes, radius_m), r.axes, radius_m, DISC_TAPS);
   return lit_of_block(r.p, facing_mates(r, -from_center(map, r.p)), own, radius_m);
 }
 

@@ -6,44 +6,6 @@
 #define CHANDELIER_FILTER_PCSS_GLSL
 #include "shadows/filter/filter_pcf.glsl"
 
-struct Blockers {
-  uint count;
-  float sum;  // of what the function that found them says
-  uint taps;
-};
-
-// A blocker: the part of the way from the centre to the plane at which it stands.
-Blockers cube_blockers(CubeDisc disc, float search_m) {
-  uint count = 0u;
-  float sum = 0.0;
-  vec2 turn = vec2(1.0, 0.0);
-  for (uint i = 0u; i < DISC_TAPS; ++i) {
-    Tap tap = cube_tap(disc, search_m * tap_ring(i, DISC_TAPS) * turn);
-    turn = NEXT_TURN * turn;
-    float blocker = depth_at(disc, tap);
-    bool blocks = blocker > tap.compared;
-    count += blocks ? 1u : 0u;
-    sum += blocks ? tap.depth / blocker : 0.0;
-  }
-  return Blockers(count, sum, DISC_TAPS);
-}
-
-// A blocker: its distance from the plane along the light's way, of the cascade's whole depth.
-Blockers cascade_blockers(CascadeDisc disc, float search_m) {
-  uint count = 0u;
-  float sum = 0.0;
-  vec2 turn = vec2(1.0, 0.0);
-  for (uint i = 0u; i < DISC_TAPS; ++i) {
-    Tap tap = cascade_tap(disc, search_m * tap_ring(i, DISC_TAPS) * turn);
-    turn = NEXT_TURN * turn;
-    float blocker = depth_at(disc, tap);
-    bool blocks = blocker > tap.compared;
-    count += blocks ? 1u : 0u;
-    sum += blocks ? blocker - tap.depth : 0.0;
-  }
-  return Blockers(count, sum, DISC_TAPS);
-}
-
 // This pixel's blockers and those of its block's that searched nearly the same disc.
 Blockers blockers_of_block(vec3 p, uint mates, Blockers own, float search_m) {
   Blockers found = own;
@@ -73,7 +35,7 @@ bool all_lit(Search found) { return found.made && found.blockers.count == 0u; }
 bool all_dark(Search found) { return found.made && found.blockers.count == found.blockers.taps; }
 bool asks_taps(Search found) { return !all_lit(found) && !all_dark(found); }
 
-// No fewer than cube_pcf() can read where it is the block's other pixels that ask.
+// No fewer than lit_by_taps() can read where it is the block's other pixels that ask.
 uint taps_after(Search found) { return asks_taps(found) ? DISC_TAPS : 4u; }
 
 // `own` is what the taps say; where the search said enough, that counts.
@@ -93,11 +55,11 @@ float cube_pcss(ShadowMap map, Receiver r) {
   CubeDisc disc = cube_disc(map, r.p, r.n, r.axes, search_m);
   uint mates = facing_mates(r, -from_center(map, r.p));
   Search found = Search(search_m > smoothing_m, Blockers(0u, 0.0, 0u));
-  if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, cube_blockers(disc, search_m), search_m);
+  if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, blockers_of_taps(disc, search_m), search_m);
   if (!subgroupAny(asks_taps(found))) return all_lit(found) ? 1.0 : 0.0;
   float t = mean_blocker(found.blockers);
   float radius_m = found.made ? clamp(map.filter_radius_m * (1.0 - t) / t, smoothing_m, search_m) : smoothing_m;
-  return lit_after(found, r, mates, cube_pcf(disc, radius_m, taps_after(found)), radius_m);
+  return lit_after(found, r, mates, lit_by_taps(disc, r.axes, radius_m, taps_after(found)), radius_m);
 }
 
 // A directional cluster's light stands at z_far. The search disc is what it casts from the cascade's near plane.
@@ -108,10 +70,10 @@ float cascade_pcss(ShadowMap map, ShadowView cascade, Receiver r) {
   float search_m = max(smoothing_m, spread_m * (1.0 - disc.receiver.z));
   uint mates = facing_mates(r, depth_per_m(cascade));
   Search found = Search(search_m > smoothing_m, Blockers(0u, 0.0, 0u));
-  if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, cascade_blockers(disc, search_m), search_m);
+  if (subgroupAny(found.made)) found.blockers = blockers_of_block(r.p, mates, blockers_of_taps(disc, search_m), search_m);
   if (!subgroupAny(asks_taps(found))) return all_lit(found) ? 1.0 : 0.0;
   float radius_m = found.made ? clamp(spread_m * mean_blocker(found.blockers), smoothing_m, search_m) : smoothing_m;
-  return lit_after(found, r, mates, cascade_pcf(disc, r.axes, radius_m, taps_after(found)), radius_m);
+  return lit_after(found, r, mates, lit_by_taps(disc, r.axes, radius_m, taps_after(found)), radius_m);
 }
 
 float visibility_pcss(ShadowMap map, Receiver r) {

@@ -90,7 +90,7 @@ struct Tap {
                    // may stand before the tap
 };
 
-Tap cube_tap(CubeDisc disc, vec2 at_m) {
+Tap tap_at(CubeDisc disc, vec2 at_m) {
   vec3 at = disc.receiver + disc.axes * at_m;
   float along = largest(abs(at));
   float depth = disc.near_m / (along * (1.0 - DEPTH_ROUNDING));
@@ -119,7 +119,7 @@ CascadeDisc cascade_disc(ShadowMap map, ShadowView cascade, vec3 p, vec3 n, mat2
                      cascade.texel_m, map.light_count == 1u, NOTHING_BESIDE);
 }
 
-Tap cascade_tap(CascadeDisc disc, vec2 at_m) {
+Tap tap_at(CascadeDisc disc, vec2 at_m) {
   vec3 clip = disc.receiver + disc.axes * at_m;
   float beside = depth_beside(disc.beside, vec3(clip.xy, 1.0)) + disc.beside.margin;
   return Tap(vec3(clip.xy * 0.5 + 0.5, disc.layer), clip.z, max(max(clip.z, disc.receiver.z), beside) + CASCADE_ROUNDING);
