@@ -62,7 +62,9 @@ FrameSlot::FrameSlot(const gpu::Device& device)
     : uploads(device),
       timers(device),
       exposure(gpu::make_buffer(device, sizeof(frame::LuminanceSum), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                gpu::Memory::readback)) {}
+                                gpu::Memory::readback)),
+      edges(gpu::make_buffer(device, sizeof(frame::EdgeCounters), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                             gpu::Memory::readback)) {}
 
 void FrameSlot::reset() {
   uploads.reset();
@@ -76,10 +78,12 @@ size_t light_count(const FramePlan& plan) {
 void make_room(const gpu::Device& device, const RenderSettings& settings, const FramePlan& plan, FrameSlot& slot,
                FrameResources& resources) {
   Targets& targets = resources.targets;
-  if (targets.width != settings.width || targets.height != settings.height) {
-    Targets made = make_targets(device, settings.width, settings.height);
+  if (targets.width != settings.width || targets.height != settings.height || targets.samples != settings.samples) {
+    EdgeLists edges = make_edge_lists(device, settings.width, settings.height, settings.samples);
+    Targets made = make_targets(device, settings.width, settings.height, settings.samples);
     gpu::Buffer sums = make_luminance_sums(device, settings.width, settings.height);
     slot.retired.add(std::exchange(targets, std::move(made)));
+    slot.retired.add(std::exchange(resources.edges, std::move(edges)));
     slot.retired.add(std::exchange(resources.luminance_sums, std::move(sums)));
   }
   const Needs needs = needs_of(plan);

@@ -7,7 +7,7 @@
 #include "gpu/timers.h"
 #include "lookup/tiles.h"
 #include "scene/gpu_scene.h"
-#include "shading/targets.h"
+#include "shading/edges.h"
 #include "shadows/cull/cull.h"
 #include "shadows/store/cube_array.h"
 
@@ -24,6 +24,7 @@ struct FrameSlot {
   gpu::Timers timers;
   gpu::Buffer counters;  // frame CullCounters, read back: one for each group, then the camera's
   gpu::Buffer exposure;  // frame LuminanceSum, read back
+  gpu::Buffer edges;     // frame EdgeCounters, read back
   FrameStats stats;
   size_t groups = 0;
   double record_ms = 0.0;
@@ -33,6 +34,7 @@ struct FrameSlot {
 /// Shared by all frames: each waits on the device for the one before.
 struct FrameResources {
   Targets targets;
+  EdgeLists edges;
   gpu::Buffer luminance_sums;
   CubeArray store;
   CullState camera_draws;

@@ -35,6 +35,9 @@ struct FrameStats {
   uint64_t shadow_overflow_passes = 0;    // further passes over groups of maps, whose draws did not fit their buffer
   uint64_t visibility_bytes = 0;          // that all visibility textures of the frame need together
   uint64_t visibility_pool_bytes = 0;     // of them, held at a time
+  uint64_t edge_pixels = 0;               // whose samples show several surfaces
+  uint64_t edge_surfaces = 0;             // of these pixels; each was shaded apart
+  uint64_t sample_bytes = 0;              // images and lists that several samples in a pixel need
   std::vector<uint32_t> centers;          // for each light of the world whose shadow map it took; pack::none: none
   bool selection_is_provisional = false;  // RenderSettings::search_beside_frames: a search for this view still runs
 };

@@ -20,6 +20,7 @@ struct RenderSettings {
   Camera camera;
   uint32_t width = 1280;
   uint32_t height = 720;
+  uint32_t samples = 1;                    // in a pixel: 1, or 2, 4, 8 where can_draw_samples() (shading/targets.h)
   Ambient ambient;                         // light from everywhere, for scenes that would be black without
   float headlight = 0.0f;                  // of a white surface that faces the camera, by a light in the camera
   std::optional<float> exposure_ev;        // stops; absent: from the picture's own brightness

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -24,6 +25,8 @@ using Clock = std::chrono::steady_clock;
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
+
+constexpr uint64_t most_edge_visibility_bytes = uint64_t{64} << 20;  // held at a time, by filter rays
 
 constexpr float anisotropy_on_gpus = 8.0f;
 
@@ -72,12 +75,20 @@ void check_settings(const gpu::Device& device, const RenderSettings& settings) {
   if (const auto reason = refusal(settings.recipe)) throw std::invalid_argument(*reason);
   if (settings.width == 0 || settings.height == 0) throw std::invalid_argument("a picture needs a size");
   const uint32_t largest = device.limits.maxImageDimension2D;
+  if (!can_draw_samples(device, settings.samples))
+    throw gpu::Error(std::to_string(settings.samples) + " samples in a pixel: this device cannot draw them");
   if (settings.width > largest || settings.height > largest)
     throw gpu::Error("a picture of " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
                      " pixels is too large for this device (" + std::to_string(largest) + ")");
 }
 
 }  // namespace
+
+// What frames with one number of samples in a pixel are drawn with.
+struct SamplePipelines {
+  gpu::Pipeline g_buffer;
+  EdgePipelines edges;
+};
 
 struct Renderer::Impl {
   gpu::Device& device;
@@ -88,6 +99,7 @@ struct Renderer::Impl {
   std::map<Cull, CullPipelines> cull;  // made when first needed
   CasterPipelines casters;
   gpu::Pipeline g_buffer;
+  std::map<uint32_t, SamplePipelines> of_samples;  // 2 or more; made when first needed
   TilePipeline tile_pipeline;
   ShadePipelines shade;
   TonePipelines tone;
@@ -103,7 +115,7 @@ struct Renderer::Impl {
         scene(upload_scene(on, of, {anisotropy_on(on, options), options.upload_progress})),
         camera_cull(make_cull_pipelines(on, Cull::light_frustum, true)),
         casters(make_caster_pipelines(on, scene)),
-        g_buffer(make_g_buffer_pipeline(on, scene)),
+        g_buffer(make_g_buffer_pipeline(on, scene, 1)),
         tile_pipeline(make_tile_pipeline(on)),
         shade(make_shade_pipelines(on)),
         tone(make_tone_pipelines(on)) {
@@ -129,6 +141,10 @@ struct Renderer::Impl {
   void record_uploads(const Recording& frame);
   void record_shadow_maps(const Recording& frame, uint32_t group);
   void record_light(const Recording& frame, const MapGroup& group);
+  void light_edges_by_rays(const Recording& frame, const MapGroup& group, std::span<const SurfacePoint> points);
+  const SamplePipelines& pipelines_of(uint32_t samples);
+  Edges edges(const Recording& frame);
+  ShadeInput shade_input(const FramePlan& plan, const MapGroup& group) const;
   void record_end(const Recording& frame);
   void record_target(gpu::Commands cmd, const Target& target);
 };
@@ -172,6 +188,8 @@ Recording Renderer::Impl::prepare(gpu::Commands cmd, FrameSlot& slot, const Rend
   make_room(device, settings, planned.plan, slot, resources);
   slot.stats = planned.stats;
   slot.stats.shadow_maps_kept = place_maps(settings);
+  slot.stats.sample_bytes =
+      resources.edges.size_bytes + sample_target_bytes(settings.width, settings.height, settings.samples);
   slot.groups = planned.plan.groups.size();
   slot.is_read = false;
   return {cmd, slot, settings, planned.plan};
@@ -205,10 +223,23 @@ void Renderer::Impl::record_device_plan(const Recording& frame) {
     case Lookup::tiles: {
       const Timed timed(frame, "lookup");
       record_tiles(cmd, tile_pipeline, resources.view.buffer(), resources.lights.buffer(), light_count(plan),
-                   resources.targets, resources.tiles);
+                   resources.targets, settings.samples > 1 ? &resources.edges.tiles : nullptr, resources.tiles);
       return;
     }
   }
+}
+
+const SamplePipelines& Renderer::Impl::pipelines_of(uint32_t samples) {
+  const auto found = of_samples.find(samples);
+  if (found != of_samples.end()) return found->second;
+  SamplePipelines made{make_g_buffer_pipeline(device, scene, samples), make_edge_pipelines(device, samples)};
+  return of_samples.emplace(samples, std::move(made)).first->second;
+}
+
+Edges Renderer::Impl::edges(const Recording& frame) {
+  const RenderSettings& settings = frame.settings;
+  const float pixel_angle = 2.0f * std::tan(0.5f * settings.camera.yfov_rad) / static_cast<float>(settings.height);
+  return {pipelines_of(settings.samples).edges, resources.edges, resources.targets, pixel_angle};
 }
 
 // What the camera sees, and which lights reach it.
@@ -230,7 +261,10 @@ void Renderer::Impl::record_start(const Recording& frame) {
                            .group = static_cast<uint32_t>(plan.groups.size())};
     record_boxes(cmd, device, camera_cull, scene, camera, resources.camera_draws);
     record_cull(cmd, device, camera_cull, scene, camera, resources.camera_draws);
-    record_g_buffer(cmd, g_buffer, scene, resources.camera_draws, resources.view.buffer(), resources.targets);
+    const bool has_samples = settings.samples > 1;
+    const gpu::Pipeline& pipeline = has_samples ? pipelines_of(settings.samples).g_buffer : g_buffer;
+    record_g_buffer(cmd, pipeline, scene, resources.camera_draws, resources.view.buffer(), resources.targets);
+    if (has_samples) record_find_edges(cmd, edges(frame));
   }
   record_device_plan(frame);
 }
@@ -271,19 +305,24 @@ void Renderer::Impl::record_shadow_maps(const Recording& frame, uint32_t number)
   end_casters(cmd, drawn);
 }
 
-// Adds the light of a group's lights. Where visibility comes from rays it is in `visibility` already.
+ShadeInput Renderer::Impl::shade_input(const FramePlan& plan, const MapGroup& group) const {
+  return {.view = resources.view.buffer(),
+          .lights = resources.lights.buffer(),
+          .maps = resources.maps.buffer(),
+          .views = resources.views.buffer(),
+          .visibility = resources.visibility,
+          .tiles = resources.tiles,
+          .first_light = group.first_light,
+          .light_count = group.light_count,
+          .projections = projections_of(plan.list.maps),
+          .parts_of_layers = has_parts_of_layers(plan.list.maps, resources.store)};
+}
+
+// Adds the light of a group's lights. Where visibility comes from rays it is in `visibility` already; that of edges
+// follows.
 void Renderer::Impl::record_light(const Recording& frame, const MapGroup& group) {
   const auto& [cmd, slot, settings, plan] = frame;
-  ShadeInput input{.view = resources.view.buffer(),
-                   .lights = resources.lights.buffer(),
-                   .maps = resources.maps.buffer(),
-                   .views = resources.views.buffer(),
-                   .visibility = resources.visibility,
-                   .tiles = resources.tiles,
-                   .first_light = group.first_light,
-                   .light_count = group.light_count,
-                   .projections = projections_of(plan.list.maps),
-                   .parts_of_layers = has_parts_of_layers(plan.list.maps, resources.store)};
+  ShadeInput input = shade_input(plan, group);
   if (plan.recipe.deliver == Deliver::textures && plan.recipe.filter != Filter::rays) {
     const Timed timed(frame, "deliver");
     record_visibility(cmd, device, shade, plan.recipe, input, resources.store, resources.targets);
@@ -291,6 +330,8 @@ void Renderer::Impl::record_light(const Recording& frame, const MapGroup& group)
   input.light_count += group.shadowless_count;
   const Timed timed(frame, "shade");
   record_shade(cmd, device, shade, plan.recipe, input, resources.store, resources.targets);
+  if (settings.samples > 1 && plan.recipe.filter != Filter::rays)
+    record_shade_edges(cmd, device, shade, plan.recipe, input, resources.store, edges(frame));
 }
 
 // The picture as shown, and the counters.
@@ -298,7 +339,10 @@ void Renderer::Impl::record_end(const Recording& frame) {
   const auto& [cmd, slot, settings, plan] = frame;
   {
     const Timed timed(frame, "tone-map");
+    const bool has_samples = settings.samples > 1;
+    if (has_samples) record_resolve(cmd, edges(frame));
     record_tone_map(cmd, tone, settings.exposure_ev, resources.luminance_sums, resources.targets);
+    if (has_samples) record_resolve_shown(cmd, edges(frame), resources.luminance_sums);
   }
   is_drawn = true;
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
@@ -307,6 +351,9 @@ void Renderer::Impl::record_end(const Recording& frame) {
   cmd->vkCmdCopyBuffer(cmd, resources.counters.handle, slot.counters.handle, 1, &counts);
   const VkBufferCopy exposure{.size = sizeof(frame::LuminanceSum)};
   cmd->vkCmdCopyBuffer(cmd, resources.luminance_sums.handle, slot.exposure.handle, 1, &exposure);
+  const VkBufferCopy edge_counts{.size = sizeof(frame::EdgeCounters)};
+  if (settings.samples > 1)
+    cmd->vkCmdCopyBuffer(cmd, resources.edges.counters.handle, slot.edges.handle, 1, &edge_counts);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
@@ -368,6 +415,10 @@ void Renderer::Impl::draw_by_rays(FrameSlot& slot, const RenderSettings& setting
   });
   const FramePlan& plan = planned.plan;
   const auto points = surface_points(readback, plan.view);
+  std::vector<SurfacePoint> edge_points;
+  if (settings.samples > 1)
+    edge_points =
+        read_edge_points(device, edges({{device, VK_NULL_HANDLE}, slot, settings, plan}), resources.view.buffer());
   const gpu::Buffer& visibility = resources.visibility;
   const std::span<uint8_t> bytes(reinterpret_cast<uint8_t*>(visibility.mapped), visibility.size_bytes);
   for (const MapGroup& group : plan.groups) {
@@ -375,8 +426,36 @@ void Renderer::Impl::draw_by_rays(FrameSlot& slot, const RenderSettings& setting
     fill_visibility(plan, group, points, settings.width, settings.visibility, bytes);
     slot.timers.add_cpu("filter", ms_since(start));
     gpu::run_once(device, [&](gpu::Commands cmd) { record_light({cmd, slot, settings, plan}, group); });
+    light_edges_by_rays({{device, VK_NULL_HANDLE}, slot, settings, plan}, group, edge_points);
   }
   gpu::run_once(device, [&](gpu::Commands cmd) { record_end({cmd, slot, settings, plan}); });
+}
+
+// In parts whose visibility fits a buffer.
+void Renderer::Impl::light_edges_by_rays(const Recording& frame, const MapGroup& group,
+                                         std::span<const SurfacePoint> points) {
+  if (points.empty()) return;
+  const auto& [none, slot, settings, plan] = frame;
+  const uint64_t maps = std::max<uint64_t>(group.map_count, 1);
+  const uint64_t most = std::clamp<uint64_t>(most_edge_visibility_bytes / maps, 1, points.size());
+  const gpu::Buffer visibility =
+      gpu::make_buffer(device, most * maps, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::upload);
+  const std::span<uint8_t> bytes(reinterpret_cast<uint8_t*>(visibility.mapped), visibility.size_bytes);
+  for (size_t first = 0; first < points.size(); first += most) {
+    const auto part = points.subspan(first, std::min<size_t>(most, points.size() - first));
+    const auto start = Clock::now();
+    fill_edge_visibility(plan, group, part, settings.visibility, bytes);
+    slot.timers.add_cpu("filter", ms_since(start));
+    const ShadeInput whole = shade_input(plan, group);
+    const ShadeInput input{
+        whole.view,       whole.lights, whole.maps,        whole.views,
+        visibility,       whole.tiles,  group.first_light, group.light_count + group.shadowless_count,
+        whole.projections, whole.parts_of_layers};
+    gpu::run_once(device, [&](gpu::Commands cmd) {
+      record_shade_edges(cmd, device, shade, plan.recipe, input, resources.store, edges(frame),
+                         {static_cast<uint32_t>(first), static_cast<uint32_t>(part.size())});
+    });
+  }
 }
 
 void Renderer::Impl::check_drawn() const {
@@ -396,6 +475,12 @@ const FrameStats& Renderer::Impl::read_stats(FrameSlot& slot) {
   frame::LuminanceSum exposure;
   std::memcpy(&exposure, slot.exposure.mapped, sizeof exposure);
   stats.exposure_ev = exposure.exposure_ev;
+  if (stats.sample_bytes > 0) {
+    frame::EdgeCounters edges;
+    std::memcpy(&edges, slot.edges.mapped, sizeof edges);
+    stats.edge_pixels = edges.pixels;
+    stats.edge_surfaces = edges.surfaces;
+  }
   for (size_t i = 0; i < slot.groups; ++i) {
     frame::CullCounters group;
     std::memcpy(&group, slot.counters.mapped + i * sizeof group, sizeof group);

@@ -40,6 +40,7 @@ InstanceFunctions load_instance(PFN_vkGetInstanceProcAddr loader, VkInstance ins
   LOAD(vkGetPhysicalDeviceProperties2);
   LOAD(vkGetPhysicalDeviceFeatures2);
   LOAD(vkGetPhysicalDeviceFormatProperties2);
+  LOAD(vkGetPhysicalDeviceImageFormatProperties);
   LOAD(vkGetPhysicalDeviceMemoryProperties);
   LOAD(vkGetPhysicalDeviceQueueFamilyProperties);
   LOAD(vkCreateDevice);

@@ -210,8 +210,9 @@ Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& in) {
       .polygonMode = VK_POLYGON_MODE_FILL,
       .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
       .lineWidth = 1.0f};
-  const VkPipelineMultisampleStateCreateInfo samples{.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-                                                     .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  const VkPipelineMultisampleStateCreateInfo samples{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+      .rasterizationSamples = static_cast<VkSampleCountFlagBits>(in.samples)};
   const VkPipelineDepthStencilStateCreateInfo depth{.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
                                                     .depthTestEnable = VK_TRUE,
                                                     .depthWriteEnable = VK_TRUE,

@@ -69,6 +69,7 @@ struct GraphicsInfo {
   std::vector<VkFormat> colors;
   VkFormat depth = VK_FORMAT_UNDEFINED;
   Constants constants;
+  uint32_t samples = 1;
 };
 /// Triangle lists, reversed depth (greater passes), dynamic viewport, scissor and cull mode. Throws Error where an
 /// input of the vertex shader is in no stream, or no shader has a constant of a name.

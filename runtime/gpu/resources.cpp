@@ -43,7 +43,7 @@ Image make_image(const Device& device, const ImageInfo& info) {
                                  .extent = {info.width, info.height, 1},
                                  .mipLevels = info.levels,
                                  .arrayLayers = info.layers,
-                                 .samples = VK_SAMPLE_COUNT_1_BIT,
+                                 .samples = static_cast<VkSampleCountFlagBits>(info.samples),
                                  .tiling = VK_IMAGE_TILING_OPTIMAL,
                                  .usage = info.usage};
   VkImage handle = VK_NULL_HANDLE;
@@ -57,6 +57,13 @@ Image make_image(const Device& device, const ImageInfo& info) {
         "vkBindImageMemory");
   image.view = make_view(device, image, info.view_type, 0, info.layers);
   return image;
+}
+
+bool can_have_samples(const Device& device, VkFormat format, VkImageUsageFlags usage, uint32_t samples) {
+  VkImageFormatProperties properties{};
+  const VkResult result = device.instance_functions().vkGetPhysicalDeviceImageFormatProperties(
+      device.physical, format, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL, usage, 0, &properties);
+  return result == VK_SUCCESS && (properties.sampleCounts & samples) != 0;
 }
 
 Owned<VkImageView> make_view(const Device& device, const Image& image, VkImageViewType type, uint32_t first_layer,

@@ -70,6 +70,7 @@ struct ImageInfo {
   uint32_t height = 1;
   uint32_t levels = 1;
   uint32_t layers = 1;
+  uint32_t samples = 1;
   VkImageUsageFlags usage = 0;
   VkImageCreateFlags flags = 0;
   VkImageViewType view_type = VK_IMAGE_VIEW_TYPE_2D;
@@ -85,6 +86,8 @@ struct Image {
 };
 
 Image make_image(const Device& device, const ImageInfo& info);
+/// Whether a 2D image of this format and usage may have so many samples: 1, 2, 4, 8 …
+bool can_have_samples(const Device& device, VkFormat format, VkImageUsageFlags usage, uint32_t samples);
 /// Another view of layers [first_layer, first_layer + layer_count).
 Owned<VkImageView> make_view(const Device& device, const Image& image, VkImageViewType type, uint32_t first_layer,
                              uint32_t layer_count);

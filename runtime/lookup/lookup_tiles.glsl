@@ -3,10 +3,12 @@
 // group runs one loop: groups never reach over a tile's edge.
 #ifndef CHANDELIER_LOOKUP_TILES_GLSL
 #define CHANDELIER_LOOKUP_TILES_GLSL
-#include "shading/strips.glsl"
+
+// The tile that this work group's pixels are in, in tiles.
+uvec2 tile_of_group();
 
 uint next_light_tiles(uint light) {
-  uvec2 tile = square_of_group() * gl_WorkGroupSize.xy / TILE_SIZE_PX;
+  uvec2 tile = tile_of_group();
   uint first_word = (tile.y * group.tiles_x + tile.x) * group.words_per_tile;
   while (light < group.light_end) {
     uint bits = tile_words[first_word + light / 32u].bits >> (light % 32u);

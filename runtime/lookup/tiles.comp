@@ -8,11 +8,13 @@
 #include "pack_schema.glsl"
 #include "shading/eye_position.glsl"
 
+layout(constant_id = 0) const uint has_edges = 0u;  // 1: edge pixels are background in depth_image, and their depths here
 layout(local_size_x = TILE_SIZE_PX, local_size_y = TILE_SIZE_PX) in;
 layout(binding = 0, scalar) readonly buffer View { ViewConstants view; };
 layout(binding = 1, scalar) readonly buffer Lights { FrameLight lights[]; };
 layout(binding = 2) uniform sampler2D depth_image;
 layout(binding = 3, scalar) writeonly buffer TileWords { TileWord tile_words[]; };
+layout(binding = 4, scalar) readonly buffer EdgeTiles { EdgeTile edge_tiles[]; };
 layout(push_constant, scalar) uniform Push { TileConstants tiles; };
 
 const uint THREADS = TILE_SIZE_PX * TILE_SIZE_PX;
@@ -56,9 +58,10 @@ bool reaches(FrameLight light, Tile tile) {
 
 void main() {
   uint thread = gl_LocalInvocationIndex;
+  uint tile_number = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   if (thread == 0u) {
-    nearest_bits = 0u;
-    farthest_bits = 0xFFFFFFFFu;
+    nearest_bits = has_edges != 0u ? edge_tiles[tile_number].nearest : 0u;
+    farthest_bits = has_edges != 0u ? edge_tiles[tile_number].farthest : 0xFFFFFFFFu;
   }
   barrier();
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -72,7 +75,7 @@ void main() {
   bool seen = nearest_bits != 0u;
   Tile tile = make_tile(uintBitsToFloat(nearest_bits), uintBitsToFloat(farthest_bits));
 
-  uint first_word = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * tiles.words_per_tile;
+  uint first_word = tile_number * tiles.words_per_tile;
   for (uint first = 0u; first < tiles.light_count; first += THREADS) {
     if (thread < THREADS / 32u) words[thread] = 0u;
     barrier();

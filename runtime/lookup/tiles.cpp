@@ -11,7 +11,8 @@
 namespace chandelier {
 
 TilePipeline make_tile_pipeline(const gpu::Device& device) {
-  return {gpu::make_compute_pipeline(device, tiles_comp), gpu::make_texel_sampler(device)};
+  return {gpu::make_compute_pipeline(device, tiles_comp, {{"has_edges", 0}}),
+          gpu::make_compute_pipeline(device, tiles_comp, {{"has_edges", 1}}), gpu::make_texel_sampler(device)};
 }
 
 void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, gpu::Retired& retired,
@@ -31,14 +32,16 @@ void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height,
 }
 
 void record_tiles(gpu::Commands cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,
-                  size_t light_count, const Targets& targets, const TileLists& lists) {
-  gpu::bind(cmd, tiles.pipeline,
+                  size_t light_count, const Targets& targets, const gpu::Buffer* edge_tiles, const TileLists& lists) {
+  const gpu::Pipeline& pipeline = edge_tiles ? tiles.with_edges : tiles.pipeline;
+  gpu::bind(cmd, pipeline,
             {{"View", gpu::storage(view)},
              {"Lights", gpu::storage(lights)},
              {"depth_image", gpu::sampled(targets.depth.view, tiles.texel_sampler)},
-             {"TileWords", gpu::storage(lists.words)}});
+             {"TileWords", gpu::storage(lists.words)},
+             {"EdgeTiles", gpu::storage(edge_tiles ? *edge_tiles : lights)}});  // has to be something, read or not
   gpu::push_constants(
-      cmd, tiles.pipeline,
+      cmd, pipeline,
       frame::TileConstants{.light_count = static_cast<uint32_t>(light_count), .words_per_tile = lists.words_per_tile});
   cmd->vkCmdDispatch(cmd, lists.tiles_x, lists.tiles_y, 1);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,

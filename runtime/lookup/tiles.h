@@ -11,6 +11,7 @@ namespace chandelier {
 
 struct TilePipeline {
   gpu::Pipeline pipeline;
+  gpu::Pipeline with_edges;
   gpu::Owned<VkSampler> texel_sampler;
 };
 TilePipeline make_tile_pipeline(const gpu::Device& device);
@@ -26,8 +27,9 @@ struct TileLists {
 void make_tile_lists(const gpu::Device& device, uint32_t width, uint32_t height, size_t lights, gpu::Retired& retired,
                      TileLists& lists);
 
-/// Reads depth, which must be ready to be sampled; leaves `lists` ready for compute shaders.
+/// Reads depth, which must be ready to be sampled; leaves `lists` ready for compute shaders. `edge_tiles`: frame
+/// EdgeTile for each tile, where pixels have several samples; else null.
 void record_tiles(gpu::Commands cmd, const TilePipeline& tiles, const gpu::Buffer& view, const gpu::Buffer& lights,
-                  size_t light_count, const Targets& targets, const TileLists& lists);
+                  size_t light_count, const Targets& targets, const gpu::Buffer* edge_tiles, const TileLists& lists);
 
 }  // namespace chandelier

@@ -43,7 +43,10 @@ int report_validation(const std::vector<std::string>& messages) {
 
 using ValidationLog = std::shared_ptr<const std::vector<std::string>>;
 
-ValidationLog draw(const Options& asked, std::unique_ptr<const Scene> scene) {
+ValidationLog draw(Options asked, std::unique_ptr<Scene> scene) {
+  const auto choose_samples = [&](const gpu::Device& device) {
+    if (!asked.samples) asked.samples = scene->options.samples = default_samples(device);
+  };
   gpu::DeviceOptions device_options;
   device_options.device = asked.device;
   device_options.validation = asked.validation;
@@ -53,13 +56,15 @@ ValidationLog draw(const Options& asked, std::unique_ptr<const Scene> scene) {
     device_options.instance_extensions = window.instance_extensions();
     device_options.swapchain = true;
     gpu::Device device(device_options);
+    choose_samples(device);
     LiveScene live(asked, std::move(scene), device);
     window.run(live, device);
     return device.validation_log();
   }
 #endif
-  const auto& [stamp, pack, world, options, camera] = *scene;
   gpu::Device device(device_options);
+  choose_samples(device);
+  const auto& [stamp, pack, world, options, camera] = *scene;
   Renderer renderer(device, world, renderer_options(options));
   const VisibilitySource visibility = visibility_for(options.recipes, world);
   if (options.mode == Mode::headless) run_headless(options, camera, pack, device, renderer, visibility);
@@ -72,7 +77,7 @@ int run(const Options& asked) {
   if (asked.mode == Mode::list_devices) return list_devices();
   if (asked.mode == Mode::headless) check_writable(asked.output);
   if (!asked.stats.empty()) check_writable(asked.stats);
-  auto scene = std::make_unique<const Scene>(asked);
+  auto scene = std::make_unique<Scene>(asked);
   if (asked.mode == Mode::predict) {
     run_prediction(scene->options, scene->camera, scene->pack, scene->world);
     return 0;

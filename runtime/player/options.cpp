@@ -235,6 +235,7 @@ Options checked(const Typed& typed) {
   read_ambient(typed.ambient, options);
   read_headlight(typed.headlight, options);
   read_anisotropy(typed.anisotropy, options);
+  if (typed.samples != "auto") options.samples = static_cast<uint32_t>(std::stoul(typed.samples));
   read_camera(typed.camera, options);
   if (!typed.path.empty())
     read_path_mode(typed, options);
@@ -281,6 +282,7 @@ RenderSettings render_settings(const Options& options, const Recipe& recipe, con
   settings.camera = camera;
   settings.width = options.width;
   settings.height = options.height;
+  settings.samples = options.samples.value_or(1);
   settings.ambient = options.ambient;
   settings.headlight = options.headlight.value_or(0.0f);
   settings.exposure_ev = options.exposure_ev;

@@ -46,6 +46,7 @@ struct Options {
   Ambient ambient;
   std::optional<float> headlight;  // absent: automatic_headlight() decides for the pack
   std::optional<float> exposure_ev;
+  std::optional<uint32_t> samples;  // in a pixel; absent: as default_samples() has it for the device
   std::optional<float> anisotropy;  // absent: as RendererOptions has it
 };
 
@@ -67,6 +68,9 @@ Parsed parse_options(const std::vector<std::string>& arguments);
 /// The settings of a frame with `recipe` and these options; `visibility` comes from visibility_for().
 RenderSettings render_settings(const Options& options, const Recipe& recipe, const Camera& camera,
                                const VisibilitySource& visibility);
+
+/// Samples in a pixel where none are asked for.
+uint32_t default_samples(const gpu::Device& device);
 
 /// Options of the pack's renderer. A long upload shows its progress on a terminal.
 RendererOptions renderer_options(const Options& options);

@@ -26,7 +26,7 @@ void print_table(const Run& run) {
   fmt::print("{}: {}x{}, {}, {}\n", run.pack, run.settings.width, run.settings.height, camera_text(run.camera),
              run.preset);
   for (const Counter& counter : counters())
-    fmt::print("  {:<22}{:>14}\n", counter.name, in_units(counter, run.stats.*counter.value));
+    if (counter.is_predicted) fmt::print("  {:<22}{:>14}\n", counter.name, in_units(counter, run.stats.*counter.value));
   fmt::print("  {:<22}{:>14}\n", "expected_rmse_shown", fmt::format("{:.4f}", *run.expected_rmse));
   const Recipe& recipe = run.settings.recipe;
   if (recipe.select == Select::light_clusters || !(recipe.max_maps || recipe.max_rmse))

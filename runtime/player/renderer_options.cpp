@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "player/options.h"
+#include "shading/targets.h"
 
 namespace chandelier::player {
 namespace {
@@ -33,6 +34,11 @@ class UploadLine {
 };
 
 }  // namespace
+
+uint32_t default_samples(const gpu::Device& device) {
+  constexpr uint32_t usual = 4;
+  return can_draw_samples(device, usual) ? usual : 1;
+}
 
 RendererOptions renderer_options(const Options& options) {
   RendererOptions made;

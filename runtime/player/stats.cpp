@@ -28,6 +28,9 @@ constexpr std::array all_counters{
     Counter{"shadow_overflow_passes", &FrameStats::shadow_overflow_passes, false},
     Counter{"visibility_bytes", &FrameStats::visibility_bytes, true},
     Counter{"visibility_pool_bytes", &FrameStats::visibility_pool_bytes, true},
+    Counter{"edge_pixels", &FrameStats::edge_pixels, false, false},
+    Counter{"edge_surfaces", &FrameStats::edge_surfaces, false, false},
+    Counter{"sample_bytes", &FrameStats::sample_bytes, true, false},
 };
 
 double median(std::vector<double> values) {
@@ -91,9 +94,10 @@ Json ambient_json(const Ambient& ambient) {
   return json;
 }
 
-Json counters_json(const FrameStats& stats) {
+Json counters_json(const FrameStats& stats, bool are_predicted) {
   Json counts = Json::object();
-  for (const Counter& counter : counters()) counts[std::string(counter.name)] = stats.*counter.value;
+  for (const Counter& counter : counters())
+    if (counter.is_predicted || !are_predicted) counts[std::string(counter.name)] = stats.*counter.value;
   return counts;
 }
 
@@ -138,11 +142,12 @@ Json to_json(const Run& run) {
                {"recipe", recipe_json(run.settings.recipe)},
                {"ambient", ambient_json(run.settings.ambient)},
                {"headlight", run.settings.headlight},
+               {"samples", run.settings.samples},
                {"exposure_ev", run.stats.exposure_ev},
                {"frames", run.frames},
                {"frame_ms", run.stats.frame_ms},
                {"stages", std::move(stages)},
-               {"counters", counters_json(run.stats)}};
+               {"counters", counters_json(run.stats, false)}};
   if (!run.image.empty()) json["image"] = run.image;
   if (!run.radiance.empty()) json["radiance"] = run.radiance;
   if (run.expected_rmse) json["expected_rmse_shown"] = *run.expected_rmse;
@@ -156,7 +161,7 @@ Json prediction_json(const Run& run) {
           {"camera", camera_json(run.camera)},
           {"preset", run.preset},
           {"recipe", recipe_json(run.settings.recipe)},
-          {"counters", counters_json(run.stats)},
+          {"counters", counters_json(run.stats, true)},
           {"expected_rmse_shown", *run.expected_rmse},
           {"lights_without_own_map", shared_maps_json(*run.shared_maps)},
           {"center_of_light", centers_json(run.stats.centers)}};

@@ -40,6 +40,7 @@ struct Counter {
   std::string_view name;
   uint64_t FrameStats::*value;
   bool is_bytes;
+  bool is_predicted = true;  // needs no device
 };
 /// Every counter of a frame, in the order of reports.
 std::span<const Counter> counters();

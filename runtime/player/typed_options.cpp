@@ -102,9 +102,10 @@ void declare_output(CLI::App& app, Typed& typed) {
   app.add_option("--compare", typed.compare, "Draw with two presets and report their difference")
       ->type_name("A,B")
       ->group("Output");
-  app.add_flag("--keep-shadow-maps", typed.keep_shadow_maps,
-               "Draw no shadow map again whose depths are there from the frame before, with --frames and --path; counters "
-               "are then those of what was drawn. Windows always do")
+  app.add_flag(
+         "--keep-shadow-maps", typed.keep_shadow_maps,
+         "Draw no shadow map again whose depths are there from the frame before, with --frames and --path; counters "
+         "are then those of what was drawn. Windows always do")
       ->group("Output");
   app.add_flag("--predict", typed.predict, "Print what a frame will cost, without drawing it or opening a device")
       ->group("Output");
@@ -143,6 +144,13 @@ void declare_view(CLI::App& app, Typed& typed) {
          "Sharpness of textures on slanted surfaces: 1 to 16 samples along the slant. auto: 8 on a GPU, 1 where "
          "the CPU draws")
       ->type_name("N|auto")
+      ->capture_default_str()
+      ->group("View");
+  app.add_option(
+         "--samples", typed.samples,
+         "Samples in a pixel, which smooth edges: 1, 2, 4 or 8. auto: 4, or 1 where the device cannot draw them")
+      ->type_name("N|auto")
+      ->check(one_of({"auto", "1", "2", "4", "8"}))
       ->capture_default_str()
       ->group("View");
   app.add_option("--exposure", typed.exposure, "Stops; auto computes it from the picture's brightness")

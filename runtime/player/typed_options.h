@@ -17,7 +17,7 @@ constexpr uint32_t largest_picture = 16384;  // texels a side; no Vulkan device 
 
 struct Typed {
   std::string pack, output, size = "1280x720", camera, stats, device, preset, exposure = "auto", headlight = "auto",
-                            anisotropy = "auto", ambient = "0", compare, report, path;
+                            anisotropy = "auto", ambient = "0", samples = "auto", compare, report, path;
   std::optional<uint32_t> frames;
   bool list_devices = false;
   bool predict = false;

@@ -22,7 +22,7 @@ vec2 of_pixel(uvec2 group, uint thread) {
   ivec2 pixel = ivec2(group) * 16 + ivec2(thread % 16u, thread / 16u);
   if (any(greaterThanEqual(pixel, imageSize(radiance_image)))) return vec2(0.0);
   vec4 radiance = imageLoad(radiance_image, pixel);
-  if (is_unlit(radiance.a)) return vec2(0.0);  // not radiance
+  if (radiance.a < 1.0) return vec2(0.0);  // unlit, or partly so: not radiance
   float luminance = dot(radiance.rgb, vec3(0.2126, 0.7152, 0.0722));
   return luminance > DARKEST && luminance < 1e30 ? vec2(sqrt(luminance), 1.0) : vec2(0.0);
 }

@@ -23,4 +23,6 @@ uvec2 pixel_of_thread() {
   return square_of_group() * gl_WorkGroupSize.xy + within;
 }
 
+uvec2 tile_of_group() { return square_of_group() * gl_WorkGroupSize.xy / TILE_SIZE_PX; }
+
 #endif

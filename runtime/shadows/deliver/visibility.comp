@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shading/group.glsl"
+#include "shading/strips.glsl"
 
 // The next light that belongs to another map than `light`.
 uint next_map(uint light) {

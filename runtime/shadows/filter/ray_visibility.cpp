@@ -53,6 +53,18 @@ std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const fram
   return points;
 }
 
+namespace {
+
+// A map's light at some points.
+void ask(const FramePlan& plan, const frame::ShadowMap& map, std::span<const SurfacePoint> points,
+         const VisibilitySource& source, std::span<uint8_t> bytes) {
+  const bool directional = map.projection == frame::Projection::cascade;
+  const float radius_m = directional ? map.filter_radius_m / plan.recipe.z_far_m : map.filter_radius_m;
+  source({plan.list.lights[map.first_light], map.near_m, radius_m, plan.view.eye_ws, points, bytes});
+}
+
+}  // namespace
+
 void fill_visibility(const FramePlan& plan, const MapGroup& group, std::span<const SurfacePoint> points, uint32_t width,
                      const VisibilitySource& source, std::span<uint8_t> bytes) {
   std::vector<SurfacePoint> in_rect;
@@ -63,11 +75,45 @@ void fill_visibility(const FramePlan& plan, const MapGroup& group, std::span<con
       const auto row = points.subspan(size_t{y} * width + map.rect_x, map.rect_width);
       in_rect.insert(in_rect.end(), row.begin(), row.end());
     }
-    const bool directional = map.projection == frame::Projection::cascade;
-    const float radius_m = directional ? map.filter_radius_m / plan.recipe.z_far_m : map.filter_radius_m;
-    source({plan.list.lights[map.first_light], map.near_m, radius_m, plan.view.eye_ws, in_rect,
-            bytes.subspan(map.first_visibility, visibility_bytes(map))});
+    ask(plan, map, in_rect, source, bytes.subspan(map.first_visibility, visibility_bytes(map)));
   }
+}
+
+std::vector<SurfacePoint> read_edge_points(const gpu::Device& device, const Edges& edges, const gpu::Buffer& view) {
+  const gpu::Buffer counters =
+      gpu::make_buffer(device, sizeof(frame::EdgeCounters), VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::readback);
+  gpu::run_once(device, [&](gpu::Commands cmd) {
+    gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                        VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+    const VkBufferCopy copy{.size = sizeof(frame::EdgeCounters)};
+    cmd->vkCmdCopyBuffer(cmd, edges.lists.counters.handle, counters.handle, 1, &copy);
+    gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                        VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+  });
+  frame::EdgeCounters found;
+  std::memcpy(&found, counters.mapped, sizeof found);
+  if (found.surfaces == 0) return {};
+  const gpu::Buffer points = gpu::make_buffer(device, found.surfaces * sizeof(frame::EdgePoint),
+                                              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::readback);
+  gpu::run_once(device, [&](gpu::Commands cmd) {
+    record_edge_points(cmd, edges, view, points);
+    gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                        VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+  });
+  std::vector<SurfacePoint> read;
+  read.reserve(found.surfaces);
+  for (size_t i = 0; i < found.surfaces; ++i) {
+    frame::EdgePoint point;
+    std::memcpy(&point, points.mapped + i * sizeof point, sizeof point);
+    read.push_back({point.position, point.normal_ws});
+  }
+  return read;
+}
+
+void fill_edge_visibility(const FramePlan& plan, const MapGroup& group, std::span<const SurfacePoint> points,
+                          const VisibilitySource& source, std::span<uint8_t> bytes) {
+  for (uint32_t m = 0; m < group.map_count; ++m)
+    ask(plan, plan.list.maps[group.first_map + m], points, source, bytes.subspan(m * points.size(), points.size()));
 }
 
 }  // namespace chandelier

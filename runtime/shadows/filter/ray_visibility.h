@@ -3,7 +3,7 @@
 #pragma once
 
 #include "frame/frame_plan.h"
-#include "shading/targets.h"
+#include "shading/edges.h"
 
 namespace chandelier {
 
@@ -18,5 +18,11 @@ std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const fram
 /// textures.
 void fill_visibility(const FramePlan& plan, const MapGroup& group, std::span<const SurfacePoint> points, uint32_t width,
                      const VisibilitySource& source, std::span<uint8_t> bytes);
+
+/// One point for each surface of edge pixels, in their order. Submits and waits.
+std::vector<SurfacePoint> read_edge_points(const gpu::Device& device, const Edges& edges, const gpu::Buffer& view);
+/// As fill_visibility(), of these points alone: a byte for each, then the group's next map.
+void fill_edge_visibility(const FramePlan& plan, const MapGroup& group, std::span<const SurfacePoint> points,
+                          const VisibilitySource& source, std::span<uint8_t> bytes);
 
 }  // namespace chandelier
