@@ -37,7 +37,7 @@ class UploadLine {
 
 uint32_t default_samples(const gpu::Device& device) {
   constexpr uint32_t usual = 4;
-  return can_draw_samples(device, usual) ? usual : 1;
+  return !device.is_software && can_draw_samples(device, usual) ? usual : 1;  // shading/MEASUREMENTS.md
 }
 
 RendererOptions renderer_options(const Options& options) {

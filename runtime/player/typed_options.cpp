@@ -146,9 +146,9 @@ void declare_view(CLI::App& app, Typed& typed) {
       ->type_name("N|auto")
       ->capture_default_str()
       ->group("View");
-  app.add_option(
-         "--samples", typed.samples,
-         "Samples in a pixel, which smooth edges: 1, 2, 4 or 8. auto: 4, or 1 where the device cannot draw them")
+  app.add_option("--samples", typed.samples,
+                 "Samples in a pixel, which smooth edges: 1, 2, 4 or 8. auto: 4 on a GPU that can, 1 where "
+                 "the CPU draws")
       ->type_name("N|auto")
       ->check(one_of({"auto", "1", "2", "4", "8"}))
       ->capture_default_str()

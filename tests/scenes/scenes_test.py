@@ -23,7 +23,7 @@ PLAY = os.environ["CHANDELIER_PLAY"]
 BAKE = os.environ["CHANDELIER_BAKE"]
 GOLDEN = pathlib.Path(__file__).parent / "golden"
 SKIPPED = 77  # exit status that ctest shows as "Skipped"
-PICTURE = ["--size", "240x135"]
+PICTURE = ["--size", "240x135", "--samples", "1"]
 SIZE = [*PICTURE, "--face-size", "256"]
 EXAMPLES = ("atrium", "cornell", "restaurant")
 # A golden picture was drawn by one driver; others round differently at edges. A mirrored or unlit picture of these

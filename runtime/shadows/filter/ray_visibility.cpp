@@ -22,7 +22,7 @@ void record_read_surfaces(gpu::Commands cmd, const Targets& targets, const gpu::
   cmd->vkCmdCopyImageToBuffer(cmd, targets.surface.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1,
                               &copy);
   gpu::image_barrier(cmd, targets.surface, use::copied, use::sampled);
-  copy.imageSubresource.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
+  copy.imageSubresource.aspectMask = targets.depth.aspect;
   copy.bufferOffset = VkDeviceSize{16} * targets.width * targets.height;
   gpu::image_barrier(cmd, targets.depth, use::sampled, use::copied);
   cmd->vkCmdCopyImageToBuffer(cmd, targets.depth.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, readback.handle, 1,
