@@ -448,8 +448,8 @@ void Renderer::Impl::light_edges_by_rays(const Recording& frame, const MapGroup&
     slot.timers.add_cpu("filter", ms_since(start));
     const ShadeInput whole = shade_input(plan, group);
     const ShadeInput input{
-        whole.view,       whole.lights, whole.maps,        whole.views,
-        visibility,       whole.tiles,  group.first_light, group.light_count + group.shadowless_count,
+        whole.view,        whole.lights,         whole.maps,        whole.views,
+        visibility,        whole.tiles,          group.first_light, group.light_count + group.shadowless_count,
         whole.projections, whole.parts_of_layers};
     gpu::run_once(device, [&](gpu::Commands cmd) {
       record_shade_edges(cmd, device, shade, plan.recipe, input, resources.store, edges(frame),

@@ -34,16 +34,16 @@ void begin_pass(gpu::Commands cmd, const Targets& targets, const Attachments& dr
                                      .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
                                      .clearValue = {}};
   };
-  std::vector colors{attachment(drawn.surface, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL),
-                                     attachment(drawn.radiance, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)};
+  VkRenderingAttachmentInfo colors[3]{attachment(drawn.surface, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL),
+                                      attachment(drawn.radiance, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)};
   colors[1].clearValue.color.float32[3] = alpha_of_occlusion(1.0f);
-  if (drawn.middle_depth) colors.push_back(attachment(*drawn.middle_depth, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
+  if (drawn.middle_depth) colors[2] = attachment(*drawn.middle_depth, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   const auto depth = attachment(drawn.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
   const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                              .renderArea = {{0, 0}, {targets.width, targets.height}},
                              .layerCount = 1,
-                             .colorAttachmentCount = static_cast<uint32_t>(colors.size()),
-                             .pColorAttachments = colors.data(),
+                             .colorAttachmentCount = drawn.middle_depth ? 3u : 2u,
+                             .pColorAttachments = colors,
                              .pDepthAttachment = &depth};
   cmd->vkCmdBeginRendering(cmd, &info);
   gpu::set_viewport(cmd, targets.width, targets.height);

@@ -37,15 +37,15 @@ gpu::Owned<VkSampler> shadow_sampler(const gpu::Device& device, VkFilter filter,
 const gpu::Pipeline& pipeline_for(const gpu::Device& device, ShadePipelines& pipelines, Shader shader,
                                   const Recipe& recipe, const ShadeInput& input, uint32_t samples) {
   const auto number = [](auto answer) { return static_cast<uint32_t>(answer); };
-  const std::array<uint32_t, 8> key{number(shader),        number(recipe.filter),  number(recipe.shade),
-                                    number(recipe.lookup), number(recipe.deliver), input.projections,
-                                    input.parts_of_layers,     samples};
+  const std::array<uint32_t, 8> key{
+      number(shader),         number(recipe.filter), number(recipe.shade),  number(recipe.lookup),
+      number(recipe.deliver), input.projections,     input.parts_of_layers, samples};
   const auto found = pipelines.made.find(key);
   if (found != pipelines.made.end()) return found->second;
   gpu::Constants constants{{"filter_answer", number(recipe.filter)},
-                               {"lookup_answer", number(recipe.lookup)},
-                               {"projections", input.projections},
-                               {"parts_of_layers", input.parts_of_layers}};
+                           {"lookup_answer", number(recipe.lookup)},
+                           {"projections", input.projections},
+                           {"parts_of_layers", input.parts_of_layers}};
   if (shader != Shader::visibility) constants.push_back({"shade_answer", number(recipe.shade)});
   if (shader == Shader::shade) constants.push_back({"deliver_answer", number(recipe.deliver)});
   if (shader == Shader::shade_edges) constants.push_back({"samples", samples});
@@ -115,8 +115,7 @@ void record_shade(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& 
 void record_shade_edges(gpu::Commands cmd, const gpu::Device& device, ShadePipelines& pipelines, const Recipe& recipe,
                         const ShadeInput& input, const CubeArray& store, const Edges& edges, const EdgeRange& range) {
   const Targets& targets = edges.targets;
-  const gpu::Pipeline& pipeline =
-      pipeline_for(device, pipelines, Shader::shade_edges, recipe, input, targets.samples);
+  const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, Shader::shade_edges, recipe, input, targets.samples);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                       VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);

@@ -7,7 +7,7 @@
 #include "shading/edges.glsl"
 #include "shading/shade.glsl"
 
-layout(constant_id = 101) const uint samples = 4u;
+layout(constant_id = 110) const uint samples = 4u;
 layout(binding = 13) uniform usampler2DMS surface_samples;
 layout(binding = 14) uniform sampler2DMS depth_samples;
 layout(binding = 15, scalar) buffer EdgeSurfaces { EdgeSurface edge_surfaces[]; };

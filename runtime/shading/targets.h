@@ -9,7 +9,7 @@ namespace chandelier {
 /// What the g-buffer draws into where pixels have several samples.
 struct SampleTargets {
   gpu::Image surface;
-  gpu::Image depth;         // at the sample
+  gpu::Image depth;  // at the sample
   gpu::Image radiance;
   gpu::Image middle_depth;  // in the middle of the pixel, on the same triangle
 };

@@ -128,7 +128,7 @@ TEST_F(EdgesTest, WallWithoutEdgesIsAsWithOneSample) {
 TEST_F(EdgesTest, CoverageOfAHalfPlane) {
   for (const HalfPlane wall : {HalfPlane{0.3f, 0.1f}, HalfPlane{1.2f, -0.3f}, HalfPlane{0.02f, 0.013f}}) {
     RenderSettings settings = from_front();
-    settings.ambient = 1.0f;
+    settings.ambient = Ambient::constant(1.0f);
     const Frame found = frame(half_plane_scene(wall), settings, samples);
     uint32_t partly = 0;
     for (uint32_t y = 0; y < height; ++y)
@@ -151,7 +151,7 @@ TEST_F(EdgesTest, ALampInPartOfAPixelMakesThatPartWhite) {
   scene.add(HalfPlane{0.3f, 0.1f}.mesh(), scene.add_material(shining));
   scene.add(quad({0, 0, -6}, {30, 0, 0}, {0, 30, 0}), scene.add_material(plain_material(glm::vec3(wall))));
   RenderSettings settings = from_front();
-  settings.ambient = 1.0f;
+  settings.ambient = Ambient::constant(1.0f);
   const Picture found = frame(scene, settings, samples).picture;
   const float dark = from_srgb(found.shown[4 * (width - 1)]);
   uint32_t quarters = 0;
