@@ -34,6 +34,7 @@ class Answer:
         self.constant = self.name.replace("-", "_").upper()
         self.camel = camel(self.name)
         self.is_on_gpu = element.get("on") != "cpu"
+        self.keeps_order = element.get("order") != "any"
         if not self.meaning:
             raise SchemaError(f"{place}: has no text that explains it")
 
@@ -69,7 +70,7 @@ class Function:
         if not match:
             raise SchemaError(f"{place}: not a function: {text}")
         self.result, self.name, self.parameters = match.groups()
-        self.arguments = ", ".join(parameter.split()[-1] for parameter in self.parameters.split(","))
+        self.arguments = ", ".join(parameter.split()[-1] for parameter in self.parameters.split(",") if parameter)
 
 
 class Stage(Choice):

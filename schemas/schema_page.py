@@ -11,7 +11,7 @@ ATTRIBUTES = {
     "field": {"name", "type", "count", "unit", "min", "max", "enum", "index", "optional", "run", "length"},
     "section": {"kind", "name", "record", "type", "same_count", "min_count", "max_count", "always_raw"},
     "stage": {"name", "question", "default", "folder", "code", "functions"},
-    "answer": {"name", "identifier", "on"},
+    "answer": {"name", "identifier", "on", "order"},
     "setting": {"name", "option", "placeholder", "type", "enum", "unit", "scale", "default", "least", "most", "optional"},
 }
 # Words that C++, GLSL or Python keep for themselves and that a schema might want.

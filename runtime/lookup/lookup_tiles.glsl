@@ -7,7 +7,8 @@
 // The tile that this work group's pixels are in, in tiles.
 uvec2 tile_of_group();
 
-uint next_light_tiles(uint light) {
+// The first light from `light` on.
+uint light_of_tile(uint light) {
   uvec2 tile = tile_of_group();
   uint first_word = (tile.y * group.tiles_x + tile.x) * group.words_per_tile;
   while (light < group.light_end) {
@@ -17,5 +18,8 @@ uint next_light_tiles(uint light) {
   }
   return group.light_end;
 }
+
+uint first_light_tiles() { return light_of_tile(group.first_light); }
+uint light_after_tiles(uint light) { return light_of_tile(light + 1u); }
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light of one group's ShadowMaps on a surface. Lights that share a map follow each other, so that visibility is had
-// once for each map and surface. Expects what shading/group.glsl has in scope.
+// The light of one group's ShadowMaps on a surface. A lookup gives the same lights to all threads of a subgroup, since filters
+// share taps among them. Expects what shading/group.glsl has in scope.
 #ifndef CHANDELIER_SHADE_GLSL
 #define CHANDELIER_SHADE_GLSL
 
@@ -37,14 +37,31 @@ vec3 unshadowed(uint number, Reflector r, vec3 geometric_normal, vec3 p) {
   return lights[number].radiant * (falloff * n_dot_l) * reflected(r, to_light, n_dot_l);
 }
 
+// One light after the other, each with its own visibility.
+vec3 lit_in_any_order(Surface s, Reflector r, Receiver receiver, vec3 p, uvec2 place) {
+  vec3 sum = vec3(0.0);
+  uint light = first_light();
+  if (light < group.light_end) do {
+    uint number = lights[light].map;
+    vec3 of_light = unshadowed(light, r, s.geometric_normal, p);
+    bool reached = subgroupAny(largest(of_light) > 0.0);
+    if (number != NONE && reached) of_light *= visible_part(number, receiver, place);
+    sum += of_light;
+    light = light_after(light);
+  } while (light < group.light_end);
+  return sum;
+}
+
+// Where the lookup keeps order, lights that share a map follow each other, so that visibility is had once for each map.
 // Loops run at least once and test at their end: a driver that masks lanes runs a `for`'s body once more than asked. It also
 // executes what stands behind an `if` that no thread takes, which is why the inner loop goes on over maps of which nothing
 // reaches these pixels: visibility is read once for each map that does.
 vec3 lit_by_group(Surface s, vec3 p, uvec2 place) {
   Reflector r = reflector(s, normalize(-p));
   Receiver receiver = receiver_at(p, s.geometric_normal);
+  if (!lookup_keeps_order()) return lit_in_any_order(s, r, receiver, p, place);
   vec3 sum = vec3(0.0);
-  uint light = next_light(group.first_light);
+  uint light = first_light();
   if (light < group.light_end) do {
     uint number;
     vec3 of_map;
@@ -55,7 +72,7 @@ vec3 lit_by_group(Surface s, vec3 p, uvec2 place) {
       of_map = vec3(0.0);
       do {
         of_map += unshadowed(light, r, s.geometric_normal, p);
-        light = next_light(light + 1u);
+        light = light_after(light);
       } while (light < map_end);
       reached = number == NONE || subgroupAny(largest(of_map) > 0.0);
     } while (!reached && light < group.light_end);

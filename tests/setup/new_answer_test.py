@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A new answer to a stage's question is files of its own and a row in frame.xml: adds one to a copy of the tree, builds it, runs it."""
+"""A new answer to a stage's question is files of its own and a row in frame.xml: adds two to a copy of the tree, builds it, runs it."""
 import filecmp
 import os
 import pathlib
@@ -13,6 +13,10 @@ SOURCE = pathlib.Path(os.environ["CHANDELIER_SOURCE"])
 BAKE = os.environ["CHANDELIER_BAKE"]
 
 ROW = '    <answer name="every-other">every batch goes into every other view</answer>\n'
+LOOKUP_ROW = '    <answer name="backwards" order="any">every pixel tries every light, the last one first</answer>\n'
+LOOKUP = """uint first_light_backwards() { return group.light_end - 1u; }
+uint light_after_backwards(uint light) { return light == group.first_light ? group.light_end : light - 1u; }
+"""
 COMPUTE = """#version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shadows/cull/cull.glsl"
@@ -34,7 +38,8 @@ struct CullEveryOther {
 
 }  // namespace chandelier
 """
-# Says what is drawn and what is predicted with every answer of `cull`. Smaller than the player, so that it builds sooner.
+# Says what is drawn and what is predicted with every answer of `cull`, and how bright the picture is with every lookup and
+# delivery. Smaller than the player, so that it builds sooner.
 PROGRAM = """
 #include <cstdio>
 
@@ -57,6 +62,20 @@ int main(int, char** arguments) {
     for (const FrameStats& stats : {renderer.draw(settings), predictor.predict(settings).stats})
       std::printf("%s %d %d\\n", answer.name.data(), int(stats.shadow_draws), int(stats.shadow_triangles));
   }
+  for (const Answer& delivery : answers_of(Deliver{}))
+    for (const Answer& answer : answers_of(Lookup{})) {
+      RenderSettings settings;
+      set_by_name(settings.recipe.lookup, answer.name);
+      set_by_name(settings.recipe.deliver, delivery.name);
+      settings.recipe.select = Select::light_clusters, settings.recipe.filter = Filter::pcss;
+      settings.recipe.d_init_m = 4.0f, settings.recipe.reference_share = 2.0f;
+      settings.width = 64, settings.height = 36, settings.recipe.face_size_px = 64;
+      settings.camera = {.eye_ws = {0, 1.5f, 2}, .forward_ws = {0, 0, -1}};
+      renderer.draw(settings);
+      double sum = 0.0, squares = 0.0;
+      for (const float value : renderer.read_back().radiance) sum += value, squares += double(value) * value;
+      std::printf("%s %.9g %.9g\\n", answer.name.data(), sum, squares);
+    }
 }
 """
 BUILT = """
@@ -93,8 +112,10 @@ class NewAnswer(unittest.TestCase):
         (cull / "cull_every_other.h").write_text(HEADER)
         page = self.tree / "schemas" / "frame.xml"
         text, before = page.read_text(encoding="utf-8"), '    <answer name="light-frustum">'
-        self.assertEqual(text.count(before), 1)
-        page.write_text(text.replace(before, ROW + before), encoding="utf-8")
+        (self.tree / "runtime" / "lookup" / "lookup_backwards.glsl").write_text(LOOKUP)
+        lookup = '    <answer name="tiles">'
+        self.assertEqual((text.count(before), text.count(lookup)), (1, 1))
+        page.write_text(text.replace(before, ROW + before).replace(lookup, LOOKUP_ROW + lookup), encoding="utf-8")
 
     def build(self):
         # Without optimization, and with paths in the compiler's cache that do not depend on the scratch folder.
@@ -116,7 +137,8 @@ class NewAnswer(unittest.TestCase):
         now, before = files_in(self.tree), files_in(SOURCE)
         changed = {str(f) for f in now if f not in before or not filecmp.cmp(self.tree / f, SOURCE / f, shallow=False)}
         self.assertEqual(changed, {"runtime/shadows/cull/cull_every_other.comp", "runtime/shadows/cull/cull_every_other.h",
-                                   "schemas/frame.xml", "runtime/RECIPES.md"})  # the last is generated
+                                   "runtime/lookup/lookup_backwards.glsl", "schemas/frame.xml",
+                                   "runtime/RECIPES.md"})  # the last is generated
         self.assertEqual(before - now, set())
 
         program, pack = self.build(), self.folder / "room.chandelier"
@@ -125,7 +147,13 @@ class NewAnswer(unittest.TestCase):
         counts = {}
         for line in self.run_well(program, pack).splitlines():
             name, *numbers = line.split()
-            counts.setdefault(name, []).append(list(map(int, numbers)))
+            counts.setdefault(name, []).append(list(map(float, numbers)))
+        pictures = {name: counts.pop(name) for name in ("all", "tiles", "backwards")}
+        self.assertGreater(pictures["all"][0][0], 0)
+        for name, by_delivery in pictures.items():  # sums of floats in another order
+            for found, expected in zip(by_delivery, pictures["all"], strict=True):
+                for a, b in zip(found, expected, strict=True):
+                    self.assertAlmostEqual(a / b, 1, delta=1e-5, msg=name)
         for name, (drawn, predicted) in counts.items():
             self.assertEqual(drawn, predicted, name)
         draws, triangles = counts["every-other"][0]

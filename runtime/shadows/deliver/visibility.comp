@@ -6,10 +6,12 @@
 #include "shading/group.glsl"
 #include "shading/strips.glsl"
 
-// The next light that belongs to another map than `light`.
-uint next_map(uint light) {
+// A light of each map in turns: of every map where the lookup gives lights in no order.
+uint light_of_first_map() { return lookup_keeps_order() ? first_light() : group.first_light; }
+uint light_of_next_map(uint light) {
   ShadowMap map = maps[lights[light].map];
-  return next_light(map.first_light + map.light_count);
+  uint last = map.first_light + map.light_count - 1u;
+  return lookup_keeps_order() ? light_after(last) : last + 1u;
 }
 
 void main() {
@@ -20,7 +22,7 @@ void main() {
   vec3 n = unpack_surface(texelFetch(surface_image, pixel, 0)).geometric_normal;
   vec3 p = eye_position(view, vec2(pixel) + 0.5, depth);
   Receiver receiver = receiver_at(p, n);
-  uint light = next_light(group.first_light);
+  uint light = light_of_first_map();
   if (light < group.light_end) do {
     ShadowMap map = maps[lights[light].map];
     uint place = visibility_place(map, uvec2(pixel));
@@ -29,6 +31,6 @@ void main() {
       uint visible = uint(visibility(map, receiver) * 255.0 + 0.5);
       if (reached) visibility_bytes[place] = uint8_t(visible);
     }
-    light = next_map(light);
+    light = light_of_next_map(light);
   } while (light < group.light_end);
 }
