@@ -303,6 +303,8 @@ def outputs(schema):
         for stage in schema.recipe.stages:
             if stage.code == "glsl":
                 files.append((f"stages/{stage.member}.glsl", "stage.glsl.j2", stage))
+            if stage.has_state:
+                files.append((f"stages/{stage.member}.h", "stage_state.h.j2", stage))
             if stage.code == "compute":
                 files += [(f"stages/{stage.member}.h", "stage.h.j2", stage),
                           (f"stages/{stage.member}_shaders.h", "stage_shaders.h.j2", stage)]

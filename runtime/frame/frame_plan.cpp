@@ -2,19 +2,14 @@
 #include "frame/frame_plan.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "frame/clock.h"
 #include "shadows/deliver/visibility_textures.h"
 #include "shadows/project/shadow_views.h"
 #include "shadows/store/cube_bytes.h"
 
 namespace chandelier {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 std::array<glm::vec4, 4> columns(const glm::mat4& m) {
   return {m[0], m[1], m[2], m[3]};

@@ -87,8 +87,6 @@ void make_room(const gpu::Device& device, const RenderSettings& settings, const 
     slot.retired.add(std::exchange(resources.luminance_sums, std::move(sums)));
   }
   const Needs needs = needs_of(plan);
-  if (plan.recipe.lookup == Lookup::tiles)
-    make_tile_lists(device, settings.width, settings.height, light_count(plan), slot.retired, resources.tiles);
   make_visibility(device, settings, needs.visibility_bytes, plan.recipe.filter == Filter::rays, slot,
                   resources.visibility);
   make_room(device, settings.recipe, needs.cubes, slot.retired, resources.store);

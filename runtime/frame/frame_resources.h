@@ -5,7 +5,6 @@
 #include "frame/frame_plan.h"
 #include "gpu/frames.h"
 #include "gpu/timers.h"
-#include "lookup/tiles.h"
 #include "scene/gpu_scene.h"
 #include "shading/edges.h"
 #include "shadows/cull/cull.h"
@@ -40,7 +39,6 @@ struct FrameResources {
   CullState camera_draws;
   CullState shadow_draws;
   gpu::Streamed view, lights, maps, views;
-  TileLists tiles;
   gpu::Buffer visibility;
   gpu::Buffer counters;  // one per group, then the camera's
 };

@@ -57,7 +57,7 @@ void record_over_picture(gpu::Commands cmd, const gpu::Device& device, ShadePipe
                          const Targets& targets) {
   const gpu::Pipeline& pipeline = pipeline_for(device, pipelines, shader, recipe, input, 1);
   // Every binding has to be something, read or not.
-  const gpu::Buffer& tile_words = recipe.lookup == Lookup::tiles ? input.tiles.words : input.lights;
+  const gpu::Buffer& tile_words = input.lookup.words ? *input.lookup.words : input.lights;
   const gpu::Buffer& visibility = recipe.deliver == Deliver::textures ? input.visibility : input.lights;
   gpu::bind(cmd, pipeline,
             {{"View", gpu::storage(input.view)},
@@ -76,8 +76,8 @@ void record_over_picture(gpu::Commands cmd, const gpu::Device& device, ShadePipe
   gpu::push_constants(cmd, pipeline,
                       frame::ShadeConstants{.first_light = input.first_light,
                                             .light_end = input.first_light + input.light_count,
-                                            .tiles_x = input.tiles.tiles_x,
-                                            .words_per_tile = input.tiles.words_per_tile});
+                                            .tiles_x = input.lookup.tiles_x,
+                                            .words_per_tile = input.lookup.words_per_tile});
   gpu::dispatch_over(cmd, pipeline, targets.width, targets.height);
 }
 
@@ -129,7 +129,7 @@ void record_shade_edges(gpu::Commands cmd, const gpu::Device& device, ShadePipel
              {"cubes", gpu::sampled(store.cubes, pipelines.linear_compare)},
              {"layers", gpu::sampled(store.depth.view, pipelines.linear_compare)},
              {"radiance_image", gpu::storage_image(targets.radiance)},
-             {"TileWords", gpu::storage(recipe.lookup == Lookup::tiles ? input.tiles.words : input.lights)},
+             {"TileWords", gpu::storage(input.lookup.words ? *input.lookup.words : input.lights)},
              {"Visibility", gpu::storage(recipe.filter == Filter::rays ? input.visibility : input.lights)},
              {"cube_depths", gpu::sampled(store.cubes, pipelines.nearest_depth)},
              {"layer_depths", gpu::sampled(store.depth.view, pipelines.nearest_depth)},
@@ -142,7 +142,7 @@ void record_shade_edges(gpu::Commands cmd, const gpu::Device& device, ShadePipel
                       frame::ShadeConstants{.first_light = input.first_light,
                                             .light_end = input.first_light + input.light_count,
                                             .tiles_x = edges.lists.tiles_x,
-                                            .words_per_tile = input.tiles.words_per_tile,
+                                            .words_per_tile = input.lookup.words_per_tile,
                                             .first_edge = range.first,
                                             .edge_count = range.count});
   dispatch_edge_groups(cmd, edges.lists);

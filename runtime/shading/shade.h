@@ -8,7 +8,7 @@
 #include <span>
 
 #include "gpu/pipelines.h"
-#include "lookup/tiles.h"
+#include "lookup/lookup.h"
 #include "recipe_schema.h"
 #include "shading/edges.h"
 #include "shading/targets.h"
@@ -33,7 +33,7 @@ struct ShadeInput {
   const gpu::Buffer& maps;        // frame ShadowMap
   const gpu::Buffer& views;       // frame ShadowView
   const gpu::Buffer& visibility;  // bytes of the group's visibility textures; unused where delivery is inline
-  const TileLists& tiles;         // unused where lookup is all
+  LookupData lookup;
   uint32_t first_light;
   uint32_t light_count;
   uint32_t projections;  // of the frame's maps

@@ -14,6 +14,22 @@ BAKE = os.environ["CHANDELIER_BAKE"]
 
 ROW = '    <answer name="every-other">every batch goes into every other view</answer>\n'
 LOOKUP_ROW = '    <answer name="backwards" order="any">every pixel tries every light, the last one first</answer>\n'
+LOOKUP_HEADER = """#pragma once
+
+#include "lookup/lookup.h"
+
+namespace chandelier {
+
+struct LookupBackwards {
+  static constexpr bool has_pass = false;
+  explicit LookupBackwards(const gpu::Device&) {}
+  void make_room(const gpu::Device&, const LookupRoom&, gpu::Retired&) {}
+  void record(gpu::Commands, const LookupInput&) const {}
+  LookupData data() const { return {}; }
+};
+
+}  // namespace chandelier
+"""
 LOOKUP = """uint first_light_backwards() { return group.light_end - 1u; }
 uint light_after_backwards(uint light) { return light == group.first_light ? group.light_end : light - 1u; }
 """
@@ -113,6 +129,7 @@ class NewAnswer(unittest.TestCase):
         page = self.tree / "schemas" / "frame.xml"
         text, before = page.read_text(encoding="utf-8"), '    <answer name="light-frustum">'
         (self.tree / "runtime" / "lookup" / "lookup_backwards.glsl").write_text(LOOKUP)
+        (self.tree / "runtime" / "lookup" / "lookup_backwards.h").write_text(LOOKUP_HEADER)
         lookup = '    <answer name="tiles">'
         self.assertEqual((text.count(before), text.count(lookup)), (1, 1))
         page.write_text(text.replace(before, ROW + before).replace(lookup, LOOKUP_ROW + lookup), encoding="utf-8")
@@ -137,7 +154,7 @@ class NewAnswer(unittest.TestCase):
         now, before = files_in(self.tree), files_in(SOURCE)
         changed = {str(f) for f in now if f not in before or not filecmp.cmp(self.tree / f, SOURCE / f, shallow=False)}
         self.assertEqual(changed, {"runtime/shadows/cull/cull_every_other.comp", "runtime/shadows/cull/cull_every_other.h",
-                                   "runtime/lookup/lookup_backwards.glsl", "schemas/frame.xml",
+                                   "runtime/lookup/lookup_backwards.glsl", "runtime/lookup/lookup_backwards.h", "schemas/frame.xml",
                                    "runtime/RECIPES.md"})  # the last is generated
         self.assertEqual(before - now, set())
 
