@@ -48,7 +48,7 @@ FrameRecorder::FrameRecorder(gpu::Device& on, const World& of, const RendererOpt
       casters(make_caster_pipelines(on, scene)),
       g_buffer(make_g_buffer_pipeline(on, scene, 1)),
       lookup(on),
-      shade(make_shade_pipelines(on)),
+      group_pipelines(on),
       tone(make_tone_pipelines(on)) {
   gpu::Uploader uploader(on, 0, {});
   resources.camera_draws = make_cull_state(on, uploader, lists_by_material(of.pack()));
@@ -183,7 +183,7 @@ void FrameRecorder::record_shadow_maps(const Recording& frame, uint32_t number) 
   end_casters(cmd, drawn);
 }
 
-ShadeInput FrameRecorder::shade_input(const FramePlan& plan, const MapGroup& group, const gpu::Buffer& visibility) {
+GroupInput FrameRecorder::group_input(const FramePlan& plan, const MapGroup& group, const gpu::Buffer& visibility) {
   return {.view = resources.view.buffer(),
           .lights = resources.lights.buffer(),
           .maps = resources.maps.buffer(),
@@ -200,17 +200,17 @@ ShadeInput FrameRecorder::shade_input(const FramePlan& plan, const MapGroup& gro
 // follows.
 void FrameRecorder::record_light(const Recording& frame, const MapGroup& group) {
   const auto& [cmd, slot, settings, plan] = frame;
-  ShadeInput input = shade_input(plan, group, resources.visibility);
+  GroupInput input = group_input(plan, group, resources.visibility.bytes);
   if (plan.recipe.deliver == Deliver::textures && plan.recipe.filter != Filter::rays) {
     const Timed timed(frame, "deliver");
     input.light_count = group.light_count;
-    record_visibility(cmd, device, shade, plan.recipe, input, resources.store, resources.targets);
+    record_visibility(cmd, device, group_pipelines, plan.recipe, input, resources.store, resources.targets);
   }
   input.light_count = group.light_count + group.shadowless_count;
   const Timed timed(frame, "shade");
-  record_shade(cmd, device, shade, plan.recipe, input, resources.store, resources.targets);
+  record_shade(cmd, device, group_pipelines, plan.recipe, input, resources.store, resources.targets);
   if (settings.samples > 1 && plan.recipe.filter != Filter::rays)
-    record_shade_edges(cmd, device, shade, plan.recipe, input, resources.store, edges(frame));
+    record_shade_edges(cmd, device, group_pipelines, plan.recipe, input, resources.store, edges(frame));
 }
 
 // The picture as shown, and the counters.
@@ -234,19 +234,6 @@ void FrameRecorder::record_end(const Recording& frame) {
     cmd->vkCmdCopyBuffer(cmd, resources.edges.counters.handle, slot.edges.handle, 1, &edge_counts);
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
-}
-
-void FrameRecorder::undo_if_it_throws(const std::function<void()>& record) {
-  const Version uploaded = scene.instances_version;
-  const bool store_is_new = resources.store.is_new;
-  try {
-    record();
-  } catch (...) {
-    scene.instances_version = uploaded;
-    resources.store.is_new = store_is_new;
-    resources.store.maps.forget();
-    throw;
-  }
 }
 
 void FrameRecorder::record(const Recording& frame) {

@@ -2,13 +2,13 @@
 // Records the stages of a frame in their order, with what they last draw with.
 #pragma once
 
-#include <functional>
 #include <map>
 
 #include "frame/frame_resources.h"
 #include "frame/renderer.h"
 #include "shading/shade.h"
 #include "shading/tone_map.h"
+#include "shadows/deliver/visibility_pass.h"
 #include "shadows/raster/caster_pass.h"
 #include "stages/lookup.h"
 
@@ -48,9 +48,21 @@ struct FrameRecorder {
 
   Edges edges(const Recording& frame);
   /// Of the lights of a group, those without shadow too. `visibility`: bytes of its visibility textures.
-  ShadeInput shade_input(const FramePlan& plan, const MapGroup& group, const gpu::Buffer& visibility);
+  GroupInput group_input(const FramePlan& plan, const MapGroup& group, const gpu::Buffer& visibility);
   /// Where `record` throws, its commands are lost: what they would have changed is done again by the next frame.
-  void undo_if_it_throws(const std::function<void()>& record);
+  template <typename Record>
+  void undo_if_it_throws(Record record) {
+    const Version uploaded = scene.instances_version;
+    const bool store_is_new = resources.store.is_new;
+    try {
+      record();
+    } catch (...) {
+      scene.instances_version = uploaded;
+      resources.store.is_new = store_is_new;
+      resources.store.maps.forget();
+      throw;
+    }
+  }
 
   gpu::Device& device;
   const World& world;
@@ -61,7 +73,7 @@ struct FrameRecorder {
   gpu::Pipeline g_buffer;
   std::map<uint32_t, SamplePipelines> of_samples;  // 2 or more; made when first needed
   LookupAnswers lookup;
-  ShadePipelines shade;
+  GroupPipelines group_pipelines;
   TonePipelines tone;
   FrameResources resources;
 

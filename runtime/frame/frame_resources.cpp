@@ -29,20 +29,6 @@ Needs needs_of(const FramePlan& plan) {
   return needs;
 }
 
-void make_visibility(const gpu::Device& device, const RenderSettings& settings, uint64_t bytes, bool by_rays,
-                     FrameSlot& slot, gpu::Buffer& visibility) {
-  if (bytes > device.limits.maxStorageBufferRange)
-    throw gpu::Error("a picture of " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
-                     " pixels is too large for visibility textures on this device; use deliver inline");
-  const bool fits = visibility.handle && visibility.size_bytes >= bytes && by_rays == (visibility.mapped != nullptr);
-  if (fits) return;
-  const auto size =
-      std::min<VkDeviceSize>(gpu::grown(bytes, visibility.size_bytes), device.limits.maxStorageBufferRange);
-  gpu::Buffer made = gpu::make_buffer(device, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                      by_rays ? gpu::Memory::upload : gpu::Memory::device);
-  slot.retired.add(std::exchange(visibility, std::move(made)));
-}
-
 void make_counters(const gpu::Device& device, size_t groups, FrameSlot& slot, gpu::Buffer& counters) {
   const VkDeviceSize bytes = (groups + 1) * sizeof(frame::CullCounters);
   constexpr VkBufferUsageFlags usage =
@@ -87,8 +73,8 @@ void make_room(const gpu::Device& device, const RenderSettings& settings, const 
     slot.retired.add(std::exchange(resources.luminance_sums, std::move(sums)));
   }
   const Needs needs = needs_of(plan);
-  make_visibility(device, settings, needs.visibility_bytes, plan.recipe.filter == Filter::rays, slot,
-                  resources.visibility);
+  make_room(device, {needs.visibility_bytes, plan.recipe.filter == Filter::rays, settings.width, settings.height},
+            slot.retired, resources.visibility);
   make_room(device, settings.recipe, needs.cubes, slot.retired, resources.store);
   make_room(device, {.most_draws = UINT32_MAX, .one_pass = true}, slot.retired, resources.camera_draws);
   make_room(device, {.maps = needs.maps, .views = needs.views, .most_draws = settings.most_caster_draws}, slot.retired,

@@ -8,6 +8,7 @@
 #include "scene/gpu_scene.h"
 #include "shading/edges.h"
 #include "shadows/cull/cull.h"
+#include "shadows/deliver/visibility_pass.h"
 #include "shadows/store/cube_array.h"
 
 namespace chandelier {
@@ -39,7 +40,7 @@ struct FrameResources {
   CullState camera_draws;
   CullState shadow_draws;
   gpu::Streamed view, lights, maps, views;
-  gpu::Buffer visibility;
+  VisibilityTextures visibility;
   gpu::Buffer counters;  // one per group, then the camera's
 };
 

@@ -29,9 +29,9 @@ void light_edges(FrameRecorder& recorder, const Recording& frame, const MapGroup
     const auto start = Clock::now();
     fill_edge_visibility(plan, group, part, settings.visibility, bytes_of(visibility));
     slot.timers.add_cpu("filter", ms_since(start));
-    const ShadeInput input = recorder.shade_input(plan, group, visibility);
+    const GroupInput input = recorder.group_input(plan, group, visibility);
     gpu::run_once(recorder.device, [&](gpu::Commands cmd) {
-      record_shade_edges(cmd, recorder.device, recorder.shade, plan.recipe, input, recorder.resources.store,
+      record_shade_edges(cmd, recorder.device, recorder.group_pipelines, plan.recipe, input, recorder.resources.store,
                          recorder.edges(frame), {static_cast<uint32_t>(first), static_cast<uint32_t>(part.size())});
     });
   }
@@ -55,7 +55,7 @@ void draw(FrameRecorder& recorder, FrameSlot& slot, const RenderSettings& settin
   if (settings.samples > 1) edge_points = read_edge_points(device, recorder.edges(unrecorded), resources.view.buffer());
   for (const MapGroup& group : plan.groups) {
     const auto start = Clock::now();
-    fill_visibility(plan, group, points, settings.width, settings.visibility, bytes_of(resources.visibility));
+    fill_visibility(plan, group, points, settings.width, settings.visibility, bytes_of(resources.visibility.bytes));
     slot.timers.add_cpu("filter", ms_since(start));
     run([&](const Recording& frame) { recorder.record_light(frame, group); });
     light_edges(recorder, unrecorded, group, edge_points);

@@ -268,7 +268,7 @@ const Binding& binding_for(const Pipeline& pipeline, const Resource& resource, s
 
 }  // namespace
 
-void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Resource> resources) {
+void bind(Commands cmd, const Pipeline& pipeline, std::span<const Resource> resources) {
   std::array<VkWriteDescriptorSet, most_bindings> writes;
   uint32_t count = 0;
   uint32_t bound = 0;  // a bit for each binding's number

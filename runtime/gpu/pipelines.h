@@ -76,7 +76,10 @@ struct GraphicsInfo {
 Pipeline make_graphics_pipeline(const Device& device, const GraphicsInfo& info);
 
 /// Binds the pipeline and its set 0. Throws Error unless each binding gets one resource, of its type.
-void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Resource> resources);
+void bind(Commands cmd, const Pipeline& pipeline, std::span<const Resource> resources);
+inline void bind(Commands cmd, const Pipeline& pipeline, std::initializer_list<Resource> resources) {
+  bind(cmd, pipeline, std::span(resources.begin(), resources.size()));
+}
 
 /// Throws Error unless they are as many bytes as the shaders declare.
 void push_bytes(Commands cmd, const Pipeline& pipeline, std::span<const std::byte> bytes);
