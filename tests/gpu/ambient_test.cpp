@@ -58,7 +58,9 @@ TEST_F(AmbientTest, ShaderAndCpuAgree) {
       std::memcpy(&found, answers.mapped + i * sizeof(found), sizeof(found));
       const glm::vec3 expected = ambient.at(normals[i]);
       for (int c = 0; c < 3; ++c) ASSERT_NEAR(found[c], expected[c], 2e-6f) << i;
-      if (ambient.is_constant()) ASSERT_EQ(found, expected);
+      if (ambient.is_constant()) {
+        ASSERT_EQ(found, expected);
+      }
     }
   }
 }
