@@ -15,6 +15,10 @@ std::span<uint8_t> bytes_of(const gpu::Buffer& visibility) {
   return {reinterpret_cast<uint8_t*>(visibility.mapped), visibility.size_bytes};
 }
 
+AskedLights asked_of(const FramePlan& plan) {
+  return {plan.list, plan.recipe.z_far_m, plan.view.eye_ws};
+}
+
 // In parts whose visibility fits a buffer.
 void light_edges(FrameRecorder& recorder, const Recording& frame, const MapGroup& group,
                  std::span<const SurfacePoint> points) {
@@ -27,7 +31,7 @@ void light_edges(FrameRecorder& recorder, const Recording& frame, const MapGroup
   for (size_t first = 0; first < points.size(); first += most) {
     const auto part = points.subspan(first, std::min<size_t>(most, points.size() - first));
     const auto start = Clock::now();
-    fill_edge_visibility(plan, group, part, settings.visibility, bytes_of(visibility));
+    fill_edge_visibility(asked_of(plan), group, part, settings.visibility, bytes_of(visibility));
     slot.timers.add_cpu("filter", ms_since(start));
     const GroupInput input = recorder.group_input(plan, group, visibility);
     gpu::run_once(recorder.device, [&](gpu::Commands cmd) {
@@ -55,7 +59,8 @@ void draw(FrameRecorder& recorder, FrameSlot& slot, const RenderSettings& settin
   if (settings.samples > 1) edge_points = read_edge_points(device, recorder.edges(unrecorded), resources.view.buffer());
   for (const MapGroup& group : plan.groups) {
     const auto start = Clock::now();
-    fill_visibility(plan, group, points, settings.width, settings.visibility, bytes_of(resources.visibility.bytes));
+    fill_visibility(asked_of(plan), group, points, settings.width, settings.visibility,
+                    bytes_of(resources.visibility.bytes));
     slot.timers.add_cpu("filter", ms_since(start));
     run([&](const Recording& frame) { recorder.record_light(frame, group); });
     light_edges(recorder, unrecorded, group, edge_points);

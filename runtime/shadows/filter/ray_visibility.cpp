@@ -56,26 +56,26 @@ std::vector<SurfacePoint> surface_points(const gpu::Buffer& readback, const fram
 namespace {
 
 // A map's light at some points.
-void ask(const FramePlan& plan, const frame::ShadowMap& map, std::span<const SurfacePoint> points,
+void ask(const AskedLights& lights, const frame::ShadowMap& map, std::span<const SurfacePoint> points,
          const VisibilitySource& source, std::span<uint8_t> bytes) {
   const bool directional = map.projection == frame::Projection::cascade;
-  const float radius_m = directional ? map.filter_radius_m / plan.recipe.z_far_m : map.filter_radius_m;
-  source({plan.list.lights[map.first_light], map.near_m, radius_m, plan.view.eye_ws, points, bytes});
+  const float radius_m = directional ? map.filter_radius_m / lights.z_far_m : map.filter_radius_m;
+  source({lights.list.lights[map.first_light], map.near_m, radius_m, lights.eye_ws, points, bytes});
 }
 
 }  // namespace
 
-void fill_visibility(const FramePlan& plan, const MapGroup& group, std::span<const SurfacePoint> points, uint32_t width,
-                     const VisibilitySource& source, std::span<uint8_t> bytes) {
+void fill_visibility(const AskedLights& lights, const MapGroup& group, std::span<const SurfacePoint> points,
+                     uint32_t width, const VisibilitySource& source, std::span<uint8_t> bytes) {
   std::vector<SurfacePoint> in_rect;
   for (uint32_t m = group.first_map; m < group.first_map + group.map_count; ++m) {
-    const frame::ShadowMap& map = plan.list.maps[m];
+    const frame::ShadowMap& map = lights.list.maps[m];
     in_rect.clear();
     for (uint32_t y = map.rect_y; y < map.rect_y + map.rect_height; ++y) {
       const auto row = points.subspan(size_t{y} * width + map.rect_x, map.rect_width);
       in_rect.insert(in_rect.end(), row.begin(), row.end());
     }
-    ask(plan, map, in_rect, source, bytes.subspan(map.first_visibility, visibility_bytes(map)));
+    ask(lights, map, in_rect, source, bytes.subspan(map.first_visibility, visibility_bytes(map)));
   }
 }
 
@@ -110,10 +110,10 @@ std::vector<SurfacePoint> read_edge_points(const gpu::Device& device, const Edge
   return read;
 }
 
-void fill_edge_visibility(const FramePlan& plan, const MapGroup& group, std::span<const SurfacePoint> points,
+void fill_edge_visibility(const AskedLights& lights, const MapGroup& group, std::span<const SurfacePoint> points,
                           const VisibilitySource& source, std::span<uint8_t> bytes) {
   for (uint32_t m = 0; m < group.map_count; ++m)
-    ask(plan, plan.list.maps[group.first_map + m], points, source, bytes.subspan(m * points.size(), points.size()));
+    ask(lights, lights.list.maps[group.first_map + m], points, source, bytes.subspan(m * points.size(), points.size()));
 }
 
 }  // namespace chandelier
