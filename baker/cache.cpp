@@ -20,7 +20,7 @@ namespace {
 /// The build ids of the program and of every library that it starts with: equal ones have equal code.
 std::string build_ids() {
   std::string out;
-  const auto add_notes = [](dl_phdr_info* info, std::size_t, void* text) {
+  const auto add_notes = [](dl_phdr_info* info, size_t, void* text) {
     if (std::string_view(info->dlpi_name).find("linux-vdso") != std::string_view::npos) return 0;  // the kernel's
     for (int i = 0; i < info->dlpi_phnum; ++i) {
       const ElfW(Phdr)& header = info->dlpi_phdr[i];
@@ -39,7 +39,7 @@ const std::string program_ids = build_ids();  // before main(), so that no modul
 /// The fault of an entry, or an empty text; fills `notes`.
 std::string notes_fault(const pack::File& file, const std::string& name, std::string& notes) {
   const std::string_view source = file.text(file.view().bake_info->source);
-  const std::size_t end = source.find('\n');
+  const size_t end = source.find('\n');
   if (source.substr(0, end) != name)
     return "is another entry (" + shortened(std::string(source.substr(0, end)), 60) + ")";
   if (end == std::string_view::npos) return "has no notes";
@@ -62,12 +62,12 @@ CacheKey::CacheKey(std::string stage)
   add(pack::schema_hash);
 }
 
-void CacheKey::add_bytes(const void* data, std::size_t size) {
+void CacheKey::add_bytes(const void* data, size_t size) {
   if (size > 0) XXH3_128bits_update(hash_of(state_), data, size);
 }
 
 void CacheKey::add_text(std::string_view text) {
-  add(std::uint64_t{text.size()});
+  add(uint64_t{text.size()});
   add_bytes(text.data(), text.size());
 }
 

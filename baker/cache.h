@@ -31,7 +31,7 @@ class CacheKey {
   /// `Record` must have no padding.
   template <typename Record>
   void add_records(const std::vector<Record>& records) {
-    add(std::uint64_t{records.size()});
+    add(uint64_t{records.size()});
     add_bytes(records.data(), records.size() * sizeof(Record));
   }
   void add_text(std::string_view text);
@@ -40,7 +40,7 @@ class CacheKey {
   std::string name() const;
 
  private:
-  void add_bytes(const void* data, std::size_t size);
+  void add_bytes(const void* data, size_t size);
 
   std::string stage_;
   std::shared_ptr<void> state_;  // of XXH3

@@ -12,12 +12,12 @@ namespace {
 std::string escaped(const std::filesystem::path& path) {
   std::string out;
   const std::string text = path.string();
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (c == '\n') fail(text, "a depfile cannot name a file with a line break");
     if (c == ' ' || c == '\t' || c == '#') {
       // Backslashes before it are doubled, or they would escape the one that is added.
-      for (std::size_t b = i; b > 0 && text[b - 1] == '\\'; --b) out += '\\';
+      for (size_t b = i; b > 0 && text[b - 1] == '\\'; --b) out += '\\';
       out += '\\';
     }
     if (c == '$') out += '$';

@@ -17,7 +17,7 @@ struct Error : std::runtime_error {
 };
 
 /// At most `most_bytes` of a UTF-8 text, cut between characters, with "..." if something is left out.
-std::string shortened(const std::string& text, std::size_t most_bytes);
+std::string shortened(const std::string& text, size_t most_bytes);
 
 /// The text as a message shows it: control characters, line separators and invalid UTF-8 as escapes, and of limited
 /// length.
@@ -30,7 +30,7 @@ std::string to_text(double number);
 [[noreturn]] void fail(const std::string& where, const std::string& what);
 
 /// A count that must fit the pack's 32-bit indices.
-std::uint32_t fit_u32(std::uint64_t count, const char* what);
+uint32_t fit_u32(uint64_t count, const char* what);
 
 /// Warnings, one line per kind and file however often they occur.
 class Warnings {
@@ -39,7 +39,7 @@ class Warnings {
   void add(const std::string& file, const std::string& where, const std::string& what, const std::string& name = "");
 
   /// The number of warnings, counting each repetition.
-  std::uint64_t count() const;
+  uint64_t count() const;
 
   /// `file: where (and 3 more): what`, or with names `file: where: what (A, B, C and 3 more)`, in the order of adding.
   std::vector<std::string> lines() const;
@@ -47,10 +47,10 @@ class Warnings {
  private:
   struct Entry {
     std::string file, where, what, names;
-    std::uint64_t count = 0;
+    uint64_t count = 0;
   };
   std::vector<Entry> entries_;
-  std::map<std::pair<std::string, std::string>, std::size_t> numbers_;  // of entries, by file and what
+  std::map<std::pair<std::string, std::string>, size_t> numbers_;  // of entries, by file and what
 };
 
 }  // namespace chandelier::baker

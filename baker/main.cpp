@@ -217,7 +217,7 @@ void tell(const baker::Options& options, const Outcome& outcome, std::optional<p
 void run(const baker::Options& options) {
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(options.threads));
   }
   const baker::Progress progress(shown_progress(options));
   check_outputs(options);

@@ -24,7 +24,7 @@ constexpr const char* examples = R"(Examples:
 Exit code: 0 baked, 1 failed (one line on stderr says why; an older pack stays as it was), 2 wrong usage.)";
 
 std::string check_batch_triangles(const std::string& text) {
-  std::uint32_t value = 0;
+  uint32_t value = 0;
   if (!CLI::detail::lexical_cast(text, value) || value < 4 || value > 512 || value % 4 != 0) {
     return "must be a multiple of 4 from 4 to 512 (" + text + ")";
   }
@@ -56,16 +56,16 @@ std::string check_smooth_angle(const std::string& text) {
 }
 
 /// N, or NX,NY,NZ: cells along each axis, at least one along every axis, or 0 for no grid.
-std::optional<std::array<std::uint32_t, 3>> resolution_of(const std::string& text) {
+std::optional<std::array<uint32_t, 3>> resolution_of(const std::string& text) {
   const std::vector<std::string> parts = CLI::detail::split(text, ',');
-  std::array<std::uint32_t, 3> out{};
+  std::array<uint32_t, 3> out{};
   if (parts.size() != 1 && parts.size() != 3) return std::nullopt;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (size_t axis = 0; axis < 3; ++axis) {
     const std::string& part = parts[parts.size() == 1 ? 0 : axis];
     if (!CLI::detail::lexical_cast(part, out[axis]) || out[axis] > most_voxels_on_axis) return std::nullopt;
   }
   if (out[0] == 0 && out[1] == 0 && out[2] == 0) return out;
-  const std::uint64_t cells = std::uint64_t{out[0]} * out[1] * out[2];
+  const uint64_t cells = uint64_t{out[0]} * out[1] * out[2];
   return cells > 0 && cells <= most_voxels ? std::optional(out) : std::nullopt;
 }
 

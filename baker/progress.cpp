@@ -9,7 +9,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t most_columns = 60;
+constexpr size_t most_columns = 60;
 constexpr const char* erase_line = "\r\x1b[K";
 constexpr double quick_ms = 10;  // less shows as 0.00 s
 constexpr double long_s = 0.1;   // who watches may learn that another pass is running
@@ -75,7 +75,7 @@ void Progress::next(const std::string& what) const {
   done_ = total_ = 0;
 }
 
-void Progress::advance(std::size_t done, std::size_t total) const {
+void Progress::advance(size_t done, size_t total) const {
   const std::lock_guard lock(mutex_);
   done_ = done;
   total_ = total;

@@ -38,7 +38,7 @@ class Progress {
   void next(const std::string& what) const;
 
   /// Sets how far the pass is. Any thread may call it.
-  void advance(std::size_t done, std::size_t total) const;
+  void advance(size_t done, size_t total) const;
 
   /// The bake is done: erases the rewritten line, or prints the remaining passes and the total time.
   void clear() const;
@@ -56,12 +56,12 @@ class Progress {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   mutable std::mutex mutex_;
   mutable std::string what_;
-  mutable std::size_t done_ = 0, total_ = 0;
+  mutable size_t done_ = 0, total_ = 0;
   mutable bool visible_ = false;
   mutable std::string quick_passes_;  // that have ended but are not printed yet
   mutable double quick_ms_ = 0;
   mutable double quick_ended_s_ = 0;
-  mutable std::size_t passes_ended_ = 0;
+  mutable size_t passes_ended_ = 0;
   mutable double pass_began_s_ = 0;
   std::condition_variable_any stopped_;
   std::jthread ticker_;  // updates the seconds at a terminal, and is used with all_passes

@@ -15,8 +15,8 @@ namespace chandelier::baker {
 /// One pass. It chooses its counts and their order: "triangles", "shells", "sah_cost", …
 struct PassReport {
   std::string name;
-  double ms = 0;            // wall time
-  std::uint64_t bytes = 0;  // that it put into the pack
+  double ms = 0;       // wall time
+  uint64_t bytes = 0;  // that it put into the pack
   std::vector<std::pair<std::string, double>> counts;
   bool cached = false;  // it did not run: its result came from the cache
 

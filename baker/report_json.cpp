@@ -12,10 +12,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::uint64_t peak_memory_bytes() {
+uint64_t peak_memory_bytes() {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
+  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts KiB
 }
 
 Json paths_json(const std::vector<std::filesystem::path>& paths) {
@@ -26,7 +26,7 @@ Json paths_json(const std::vector<std::filesystem::path>& paths) {
 
 /// A number without a fraction as JSON's integer.
 Json number_json(double value) {
-  const auto whole = static_cast<std::int64_t>(value);
+  const auto whole = static_cast<int64_t>(value);
   return value == static_cast<double>(whole) ? Json(whole) : Json(value);
 }
 
@@ -41,7 +41,7 @@ Json pass_json(const PassReport& pass) {
 Json cache_json(const Options& options, const Outcome& outcome) {
   if (options.cache.empty()) return nullptr;
   Json stages = Json::array();
-  std::size_t hits = 0;
+  size_t hits = 0;
   for (const auto& [entry, hit] : outcome.cache_loads) {
     stages.push_back({{"entry", entry}, {"hit", hit}});
     hits += hit;

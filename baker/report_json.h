@@ -17,12 +17,12 @@ struct Outcome {
   std::vector<std::string> warnings;
   std::vector<std::filesystem::path> files_read;
   std::map<std::string, bool> cache_loads;  // each entry, and whether it was there
-  std::uint64_t triangles = 0;              // stored
-  std::uint64_t instanced_triangles = 0;    // as drawn
-  std::uint64_t batches = 0;
-  std::uint64_t images = 0;
-  std::uint64_t lights = 0;
-  std::uint64_t pack_bytes = 0;
+  uint64_t triangles = 0;                   // stored
+  uint64_t instanced_triangles = 0;         // as drawn
+  uint64_t batches = 0;
+  uint64_t images = 0;
+  uint64_t lights = 0;
+  uint64_t pack_bytes = 0;
   double seconds = 0;  // from start to end
 };
 

@@ -13,7 +13,7 @@
 
 namespace chandelier::baker {
 
-constexpr std::uint32_t no_index = 0xFFFFFFFFu;
+constexpr uint32_t no_index = 0xFFFFFFFFu;
 
 /// No padding: vertices are compared byte by byte.
 struct Vertex {
@@ -22,21 +22,21 @@ struct Vertex {
   glm::vec4 tangent_ls{1, 0, 0, 1};  // w: the bitangent's sign
   glm::vec2 uv0{0};
   glm::vec2 uv1{0};
-  std::uint32_t color = 0xFFFFFFFFu;  // linear RGBA8, R lowest
+  uint32_t color = 0xFFFFFFFFu;  // linear RGBA8, R lowest
 };
 static_assert(sizeof(Vertex) == 60);
 
 /// Joints and weights of a vertex, as the pack has them.
 struct SkinVertex {
-  std::array<std::uint16_t, 4> joints{};   // numbers among the skin's joints
-  std::array<std::uint16_t, 4> weights{};  // unorm, their sum 65535
+  std::array<uint16_t, 4> joints{};   // numbers among the skin's joints
+  std::array<uint16_t, 4> weights{};  // unorm, their sum 65535
 };
 
 struct Primitive {
   std::vector<Vertex> vertices;
   std::vector<SkinVertex> skin_vertices;  // one per vertex, or none
-  std::vector<std::uint32_t> indices;     // a triangle list
-  std::uint32_t material = 0;
+  std::vector<uint32_t> indices;          // a triangle list
+  uint32_t material = 0;
   bool needs_normals = false;   // the file has none
   bool needs_tangents = false;  // a normal map without tangents of its own
   bool tangents_from_uv1 = false;
@@ -50,9 +50,9 @@ struct MeshInstance {
   std::string name;
   std::string where;
   glm::dmat4 world_from_local{1};
-  std::uint32_t mesh = 0;
-  std::uint32_t node = no_index;  // of Scene::nodes, where an animation or a skin moves it
-  std::uint32_t skin = no_index;
+  uint32_t mesh = 0;
+  uint32_t node = no_index;  // of Scene::nodes, where an animation or a skin moves it
+  uint32_t skin = no_index;
   bool shadowless = false;
 };
 
@@ -65,8 +65,8 @@ struct SpecularGlossiness {
   glm::vec3 diffuse_factor{1};
   glm::vec3 specular_factor{1};
   float glossiness_factor = 1;
-  std::uint32_t diffuse = no_index;              // of Scene::images: RGB sRGB, and alpha, which stays as it is
-  std::uint32_t specular_glossiness = no_index;  // RGB sRGB, alpha glossiness
+  uint32_t diffuse = no_index;              // of Scene::images: RGB sRGB, and alpha, which stays as it is
+  uint32_t specular_glossiness = no_index;  // RGB sRGB, alpha glossiness
 
   bool operator==(const SpecularGlossiness&) const = default;
 };
@@ -76,14 +76,14 @@ struct SpecularGlossiness {
 struct EncodedImage {
   std::string name;
   std::string where;  // for messages: file and image
-  std::vector<std::uint8_t> bytes;
+  std::vector<uint8_t> bytes;
   std::string file = {};  // the first part of `where`
   std::optional<SpecularGlossiness> converted_from = {};
   bool damage_told = false;  // a warning has named the damage; one is enough
 };
 
 struct Texture {
-  std::uint32_t image = 0;
+  uint32_t image = 0;
   Wrap wrap_u = Wrap::repeat;
   Wrap wrap_v = Wrap::repeat;
   Filter mag_filter = Filter::linear;
@@ -95,7 +95,7 @@ using UvTransform = std::array<glm::vec3, 2>;
 constexpr UvTransform uv_identity = {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
 
 struct TextureUse {
-  std::uint32_t texture = no_index;
+  uint32_t texture = no_index;
   bool uv1 = false;
   UvTransform uv_transform = uv_identity;
 };
@@ -133,9 +133,9 @@ struct Light {
   float inner_cone_rad = 0;        // spot only
   float outer_cone_rad = 0.7854f;  // spot only
   std::string where;               // for messages: file and node
-  std::uint32_t node = no_index;   // of Scene::nodes, where an animation moves it
+  uint32_t node = no_index;        // of Scene::nodes, where an animation moves it
   std::optional<float> power_w;    // from the author's extras (light_extras.schema.json)
-  std::uint32_t priority = 128;    // 0 to 255
+  uint32_t priority = 128;         // 0 to 255
   bool dynamic = false;
   bool unclustered = false;
   bool shadowless = false;
@@ -151,13 +151,13 @@ struct Camera {
   float yfov_rad = 0.8f;
   float aspect = 0;  // width over height; 0: the picture's own
   float znear_m = 0.1f;
-  std::uint32_t node = no_index;  // of Scene::nodes, where an animation moves it
+  uint32_t node = no_index;  // of Scene::nodes, where an animation moves it
 };
 
 /// A node that moves, or that carries one that moves. Parents come before their children.
 struct Node {
   std::string name;
-  std::uint32_t parent = no_index;
+  uint32_t parent = no_index;
   glm::dmat4 parent_from_local{1};
   glm::dvec3 translation{0};
   glm::vec4 rotation{0, 0, 0, 1};  // unit quaternion x, y, z, w
@@ -168,7 +168,7 @@ enum class AnimationPath { translation, rotation, scale };
 enum class Interpolation { linear, step, cubic_spline };
 
 struct AnimationChannel {
-  std::uint32_t node = 0;
+  uint32_t node = 0;
   AnimationPath path = AnimationPath::translation;
   Interpolation interpolation = Interpolation::linear;
   std::vector<float> times_s;  // ascending
@@ -181,7 +181,7 @@ struct Animation {
 };
 
 struct Joint {
-  std::uint32_t node = 0;
+  uint32_t node = 0;
   glm::mat4 joint_from_bind{1};
 };
 

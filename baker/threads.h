@@ -11,7 +11,7 @@ namespace chandelier::baker {
 
 /// The number of threads that a call from here may use: oneTBB's limit; inside a oneTBB task, where other tasks run
 /// already, 1.
-inline std::size_t most_threads() {
+inline size_t most_threads() {
   if (tbb::task::current_context()) return 1;
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }

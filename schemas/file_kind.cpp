@@ -22,7 +22,7 @@ struct Signature {
   std::string_view bytes;
   std::string_view name;
   std::string_view advice;
-  std::size_t offset = 0;
+  size_t offset = 0;
 };
 constexpr std::array signatures{
     Signature{"BLENDER"sv, "a Blender file", by_addon},
@@ -100,7 +100,7 @@ KnownFile known_file(const std::filesystem::path& path, std::span<const std::byt
 std::string no_pack(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   const KnownFile is = known_file(path, bytes);
   if (is.kind == FileKind::unknown)
-    return "not a Chandelier pack (it begins with" + hex(bytes.first(std::min<std::size_t>(bytes.size(), 8))) + ")";
+    return "not a Chandelier pack (it begins with" + hex(bytes.first(std::min<size_t>(bytes.size(), 8))) + ")";
   const std::string what = "not a Chandelier pack, but " + is.name;
   const auto bake = [&](const std::filesystem::path& scene) {
     std::filesystem::path pack = path;

@@ -22,9 +22,9 @@ from schema_page import CAMEL, SNAKE, SchemaError, check_attributes, check_name,
 
 # name: C++ type, GLSL type, numpy code, bytes, alignment, components
 TYPES = {
-    "u8": ("std::uint8_t", None, "u1", 1, 1, 1),
-    "u32": ("std::uint32_t", "uint", "<u4", 4, 4, 1),
-    "u64": ("std::uint64_t", None, "<u8", 8, 8, 1),
+    "u8": ("uint8_t", None, "u1", 1, 1, 1),
+    "u32": ("uint32_t", "uint", "<u4", 4, 4, 1),
+    "u64": ("uint64_t", None, "<u8", 8, 8, 1),
     "f32": ("float", "float", "<f4", 4, 4, 1),
     "vec2": ("glm::vec2", "vec2", "<f4", 8, 4, 2),
     "vec3": ("glm::vec3", "vec3", "<f4", 12, 4, 3),
@@ -144,7 +144,7 @@ class Constant:
         self.comment, self.type, self.value = comment(element), element.get("type"), element.get("value")
         if self.type not in ("string", "u32", "f32"):
             raise SchemaError(f"{self.name}: a constant is a string, u32 or f32 ({self.type})")
-        self.cpp = {"string": "std::string_view", "u32": "std::uint32_t", "f32": "float"}[self.type]
+        self.cpp = {"string": "std::string_view", "u32": "uint32_t", "f32": "float"}[self.type]
         self.literal = f'"{self.value}"' if self.type == "string" else number_literal(self.type, self.value)
         self.python = f'b"{self.value}"' if self.type == "string" else self.value
         self.glsl = TYPES[self.type][1] if self.type != "string" else None

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -11,13 +12,13 @@
 namespace chandelier::pack {
 
 [[noreturn]] inline void refuse_format(ImageFormat format) {
-  throw std::invalid_argument("no ImageFormat (" + std::to_string(static_cast<std::uint32_t>(format)) + ")");
+  throw std::invalid_argument("no ImageFormat (" + std::to_string(static_cast<uint32_t>(format)) + ")");
 }
 
 /// The unit in which texels are stored: a texel, or a block of 4×4.
 struct TexelBlock {
-  std::uint32_t side_texels;
-  std::uint32_t bytes;
+  uint32_t side_texels;
+  uint32_t bytes;
 };
 
 constexpr TexelBlock block_of(ImageFormat format) {
@@ -55,29 +56,29 @@ constexpr bool is_srgb(ImageFormat format) {
 
 /// One mip level of an image whose level_count is above `level`.
 struct ImageLevel {
-  std::uint32_t width, height;             // texels
-  std::uint32_t blocks_wide, blocks_high;  // TexelBlocks
-  std::uint64_t bytes;
+  uint32_t width, height;             // texels
+  uint32_t blocks_wide, blocks_high;  // TexelBlocks
+  uint64_t bytes;
 };
 
-constexpr ImageLevel level_of(const Image& image, std::uint32_t level) {
+constexpr ImageLevel level_of(const Image& image, uint32_t level) {
   const TexelBlock block = block_of(image.format);
-  const std::uint32_t width = std::max(1u, image.width >> level), height = std::max(1u, image.height >> level);
-  const std::uint32_t wide = (width + block.side_texels - 1) / block.side_texels;
-  const std::uint32_t high = (height + block.side_texels - 1) / block.side_texels;
-  return {width, height, wide, high, std::uint64_t{block.bytes} * wide * high};
+  const uint32_t width = std::max(1u, image.width >> level), height = std::max(1u, image.height >> level);
+  const uint32_t wide = (width + block.side_texels - 1) / block.side_texels;
+  const uint32_t high = (height + block.side_texels - 1) / block.side_texels;
+  return {width, height, wide, high, uint64_t{block.bytes} * wide * high};
 }
 
 /// Bytes of all levels of an image with valid fields: `image.size_bytes` must be this.
-constexpr std::uint64_t image_bytes(const Image& image) {
-  std::uint64_t bytes = 0;
-  for (std::uint32_t level = 0; level < image.level_count; ++level) bytes += level_of(image, level).bytes;
+constexpr uint64_t image_bytes(const Image& image) {
+  uint64_t bytes = 0;
+  for (uint32_t level = 0; level < image.level_count; ++level) bytes += level_of(image, level).bytes;
   return bytes;
 }
 
 /// Whether the bits of a half float are of a number that ImageFormat rgba16_sfloat may hold: neither negative (-0
 /// neither) nor infinite nor NaN.
-constexpr bool is_half_texel(std::uint16_t bits) {
+constexpr bool is_half_texel(uint16_t bits) {
   return bits < 0x7C00;
 }
 

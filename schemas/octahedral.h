@@ -31,35 +31,35 @@ inline glm::vec3 from_octahedral(const glm::vec2& p) {
 }
 
 /// -1..1 to a signed integer of `bits` bits, of which only the `kept` highest are used: fewer compress better.
-inline std::uint32_t snorm(float value, int bits, int kept) {
-  const auto most = static_cast<std::int32_t>((1u << (bits - 1)) - 1);
-  const std::int32_t step = 1 << (bits - kept);
-  const auto rounded = static_cast<std::int32_t>(std::lround(value * static_cast<float>(most) / static_cast<float>(step)));
-  return static_cast<std::uint32_t>(std::clamp(rounded * step, -most, most)) & ((1u << bits) - 1);
+inline uint32_t snorm(float value, int bits, int kept) {
+  const auto most = static_cast<int32_t>((1u << (bits - 1)) - 1);
+  const int32_t step = 1 << (bits - kept);
+  const auto rounded = static_cast<int32_t>(std::lround(value * static_cast<float>(most) / static_cast<float>(step)));
+  return static_cast<uint32_t>(std::clamp(rounded * step, -most, most)) & ((1u << bits) - 1);
 }
 
-inline float from_snorm(std::uint32_t value, int bits) {
-  const auto extended = static_cast<std::int32_t>(value << (32 - bits)) >> (32 - bits);
+inline float from_snorm(uint32_t value, int bits) {
+  const auto extended = static_cast<int32_t>(value << (32 - bits)) >> (32 - bits);
   return std::max(static_cast<float>(extended) / static_cast<float>((1u << (bits - 1)) - 1), -1.0f);
 }
 
 /// VertexAttributes::normal_ls; `kept` bits a side, at most 16.
-inline std::uint32_t encode_normal(const glm::vec3& normal, int kept = 16) {
+inline uint32_t encode_normal(const glm::vec3& normal, int kept = 16) {
   const glm::vec2 p = octahedral(normal);
   return snorm(p.x, 16, kept) | snorm(p.y, 16, kept) << 16;
 }
 
-inline glm::vec3 decode_normal(std::uint32_t bits) {
+inline glm::vec3 decode_normal(uint32_t bits) {
   return from_octahedral({from_snorm(bits & 0xFFFFu, 16), from_snorm(bits >> 16, 16)});
 }
 
 /// VertexAttributes::tangent_ls: w is the bitangent's sign; `kept` bits a side, at most 15.
-inline std::uint32_t encode_tangent(const glm::vec4& tangent, int kept = 15) {
+inline uint32_t encode_tangent(const glm::vec4& tangent, int kept = 15) {
   const glm::vec2 p = octahedral(tangent);
   return snorm(p.x, 16, kept) | snorm(p.y, 15, kept) << 16 | (tangent.w < 0 ? 0x80000000u : 0u);
 }
 
-inline glm::vec4 decode_tangent(std::uint32_t bits) {
+inline glm::vec4 decode_tangent(uint32_t bits) {
   return {from_octahedral({from_snorm(bits & 0xFFFFu, 16), from_snorm(bits >> 16 & 0x7FFFu, 15)}),
           (bits >> 31) != 0 ? -1.0f : 1.0f};
 }

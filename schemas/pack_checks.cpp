@@ -23,7 +23,7 @@ namespace chandelier::pack {
 namespace {
 
 /// Below this a thread takes longer to start than to help.
-constexpr std::size_t few_records = 100000;
+constexpr size_t few_records = 100000;
 
 /// How far from 1 the length of a direction may be, and from 0 the dot product of two that are perpendicular.
 constexpr float direction_tolerance = 1e-3f;
@@ -48,7 +48,7 @@ std::string bounds_fault(const char* name, const glm::vec3& low, const glm::vec3
   return {};
 }
 
-std::string multiple_fault(const char* name, std::uint64_t value, std::uint64_t of) {
+std::string multiple_fault(const char* name, uint64_t value, uint64_t of) {
   if (value % of == 0) return {};
   return std::string(".") + name + ": " + text(value) + " is not a multiple of " + text(of);
 }
@@ -65,10 +65,10 @@ std::string fault(const BatchInstance& draw) {
 
 std::string fault(const Image& image) {
   if (std::string line = multiple_fault("first_byte", image.first_byte, 16); !line.empty()) return line;
-  const std::uint32_t full_chain = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+  const uint32_t full_chain = static_cast<uint32_t>(std::bit_width(std::max(image.width, image.height)));
   if (image.level_count > full_chain) {
-    return ".level_count: " + text(std::uint64_t{image.level_count}) + " is above the " +
-           text(std::uint64_t{full_chain}) + " levels of its size";
+    return ".level_count: " + text(uint64_t{image.level_count}) + " is above the " + text(uint64_t{full_chain}) +
+           " levels of its size";
   }
   if (image.size_bytes != image_bytes(image)) {
     return ".size_bytes: " + text(image.size_bytes) + " where its levels have " + text(image_bytes(image));
@@ -100,7 +100,7 @@ std::string fault(const Camera& camera) {
 
 template <typename Record>
 std::string first_fault(const char* section, std::span<const Record> records) {
-  for (std::size_t i = 0; i < records.size(); ++i) {
+  for (size_t i = 0; i < records.size(); ++i) {
     if (std::string line = fault(records[i]); !line.empty()) return at(section, i) + line;
   }
   return {};
@@ -108,8 +108,8 @@ std::string first_fault(const char* section, std::span<const Record> records) {
 
 // What coded images hold is checked where they are decoded.
 std::string texel_fault(const View& view) {
-  std::uint64_t end = 0;
-  for (std::size_t i = 0; i < view.images.size(); ++i) {
+  uint64_t end = 0;
+  for (size_t i = 0; i < view.images.size(); ++i) {
     const Image& image = view.images[i];
     if (image.first_byte < end) {
       return at("images", i) + ".first_byte: " + text(image.first_byte) + " is before the end of the image before, " +
@@ -126,10 +126,10 @@ std::string texel_fault(const View& view) {
 // What BatchInstance promises: runs of one material are as long as can be, and the opaque ones come first.
 std::string order_fault(const View& view) {
   const auto place = [&](const BatchInstance& draw) {
-    const std::uint32_t material = view.batches[draw.batch].material;
+    const uint32_t material = view.batches[draw.batch].material;
     return std::pair(view.materials[material].alpha_mode == AlphaMode::mask, material);
   };
-  for (std::size_t i = 1; i < view.batch_instances.size(); ++i) {
+  for (size_t i = 1; i < view.batch_instances.size(); ++i) {
     if (place(view.batch_instances[i]) < place(view.batch_instances[i - 1])) {
       return "batch_instances[" + text(i) + "]: not sorted by material, opaque ones first";
     }
@@ -152,7 +152,7 @@ std::string light_fault(const Light& light) {
   return line.empty() ? fault(alone) : line.substr(at("lights", 0).size());
 }
 
-std::string check(const View& view, std::size_t most_threads) {
+std::string check(const View& view, size_t most_threads) {
   if (std::string line = validate(view, most_threads); !line.empty()) return line;
   if (std::string line = bounds_fault("bounds_min_ws", view.bake_info->bounds_min_ws, view.bake_info->bounds_max_ws);
       !line.empty()) {
@@ -176,9 +176,9 @@ std::string check(const View& view, std::size_t most_threads) {
       [&] { return first_fault("cameras", view.cameras); },
   };
   std::array<std::string, std::size(rules)> faults;
-  const auto apply = [&](std::size_t i) { faults[i] = rules[i](); };
+  const auto apply = [&](size_t i) { faults[i] = rules[i](); };
   if (view.triangle_bvh.size() + view.voxel_indices.size() < few_records) {
-    for (std::size_t i = 0; i < faults.size(); ++i) apply(i);
+    for (size_t i = 0; i < faults.size(); ++i) apply(i);
   } else {
     parallel_for(faults.size(), most_threads, apply);
   }

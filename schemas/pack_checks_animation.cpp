@@ -16,7 +16,7 @@ namespace {
 constexpr float unit_tolerance = 1e-3f;
 
 std::string node_fault(const View& view) {
-  for (std::size_t i = 0; i < view.nodes.size(); ++i) {
+  for (size_t i = 0; i < view.nodes.size(); ++i) {
     const Node& node = view.nodes[i];
     if (node.parent != none && node.parent >= i) {
       return at("nodes", i) + ".parent: " + std::to_string(node.parent) + " does not come before its child";
@@ -32,28 +32,28 @@ std::string node_fault(const View& view) {
 
 /// The keys whose time is not above that of the key before, in order. Channels may share keys, so each key is looked at
 /// once for all of them.
-std::vector<std::size_t> keys_that_do_not_ascend(std::span<const KeyTime> times) {
-  std::vector<std::size_t> keys;
-  for (std::size_t k = 1; k < times.size(); ++k) {
+std::vector<size_t> keys_that_do_not_ascend(std::span<const KeyTime> times) {
+  std::vector<size_t> keys;
+  for (size_t k = 1; k < times.size(); ++k) {
     if (!(times[k].time_s > times[k - 1].time_s)) keys.push_back(k);
   }
   return keys;
 }
 
 std::string channel_fault(const View& view) {
-  const std::vector<std::size_t> breaks = keys_that_do_not_ascend(view.animation_times);
-  for (std::size_t i = 0; i < view.animation_channels.size(); ++i) {
+  const std::vector<size_t> breaks = keys_that_do_not_ascend(view.animation_times);
+  for (size_t i = 0; i < view.animation_channels.size(); ++i) {
     const AnimationChannel& channel = view.animation_channels[i];
-    const std::uint64_t components = channel.path == AnimationPath::rotation ? 4 : 3;
-    const std::uint64_t values = channel.interpolation == Interpolation::cubic_spline ? 3 : 1;
-    const std::uint64_t expected = channel.key_count * components * values;
+    const uint64_t components = channel.path == AnimationPath::rotation ? 4 : 3;
+    const uint64_t values = channel.interpolation == Interpolation::cubic_spline ? 3 : 1;
+    const uint64_t expected = channel.key_count * components * values;
     if (channel.value_count != expected) {
       return at("animation_channels", i) + ".value_count: " + std::to_string(channel.value_count) +
              " where its keys have " + std::to_string(expected);
     }
     // A break at the channel's first key is between two channels.
-    const auto found = std::upper_bound(breaks.begin(), breaks.end(), std::size_t{channel.first_key});
-    if (found != breaks.end() && *found < std::size_t{channel.first_key} + channel.key_count) {
+    const auto found = std::upper_bound(breaks.begin(), breaks.end(), size_t{channel.first_key});
+    if (found != breaks.end() && *found < size_t{channel.first_key} + channel.key_count) {
       return at("animation_times", *found) + ".time_s: does not ascend in " + at("animation_channels", i);
     }
   }
@@ -62,15 +62,15 @@ std::string channel_fault(const View& view) {
 
 /// Animations share no channels, so that each channel is looked at once.
 std::string duration_fault(const View& view) {
-  std::size_t next_channel = 0;
-  for (std::size_t i = 0; i < view.animations.size(); ++i) {
+  size_t next_channel = 0;
+  for (size_t i = 0; i < view.animations.size(); ++i) {
     const Animation& animation = view.animations[i];
     if (animation.first_channel != next_channel) {
       return at("animations", i) + ".first_channel: " + std::to_string(animation.first_channel) +
              " where those before it end at " + std::to_string(next_channel);
     }
     next_channel += animation.channel_count;
-    for (std::size_t c = 0; c < animation.channel_count; ++c) {
+    for (size_t c = 0; c < animation.channel_count; ++c) {
       const AnimationChannel& channel = view.animation_channels[animation.first_channel + c];
       const float last = view.animation_times[channel.first_key + channel.key_count - 1].time_s;
       if (last > animation.duration_s) {
@@ -83,58 +83,58 @@ std::string duration_fault(const View& view) {
 }
 
 /// The number of the joint after the last that a vertex asks for.
-std::uint32_t joints_asked(const SkinVertex& vertex) {
-  std::uint32_t end = 0;
-  for (const std::uint32_t pair : vertex.joints) end = std::max(end, 1 + std::max(pair & 0xFFFFu, pair >> 16));
+uint32_t joints_asked(const SkinVertex& vertex) {
+  uint32_t end = 0;
+  for (const uint32_t pair : vertex.joints) end = std::max(end, 1 + std::max(pair & 0xFFFFu, pair >> 16));
   return end;
 }
 
 /// The same of each mesh. Meshes may share skin vertices, so each vertex is read once for all of them: meshes are
 /// sorted by their end, and only vertices whose maximum exceeds all later ones are kept.
-std::vector<std::uint32_t> joints_asked_by_meshes(const View& view) {
-  const auto end_of = [](const Mesh& mesh) { return std::size_t{mesh.first_skin_vertex} + mesh.skin_vertex_count; };
-  std::vector<std::uint32_t> order(view.meshes.size());
+std::vector<uint32_t> joints_asked_by_meshes(const View& view) {
+  const auto end_of = [](const Mesh& mesh) { return size_t{mesh.first_skin_vertex} + mesh.skin_vertex_count; };
+  std::vector<uint32_t> order(view.meshes.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(order, {}, [&](std::uint32_t i) { return end_of(view.meshes[i]); });
+  std::ranges::sort(order, {}, [&](uint32_t i) { return end_of(view.meshes[i]); });
   struct Waiting {
-    std::size_t vertex;
-    std::uint32_t asked;
+    size_t vertex;
+    uint32_t asked;
   };
   std::vector<Waiting> waiting;  // vertices ascend, what they ask for descends
-  std::vector<std::uint32_t> asked(view.meshes.size());
-  std::size_t next = 0;
-  for (const std::uint32_t i : order) {
+  std::vector<uint32_t> asked(view.meshes.size());
+  size_t next = 0;
+  for (const uint32_t i : order) {
     const Mesh& mesh = view.meshes[i];
     if (mesh.skin_vertex_count == 0) continue;
     for (; next < end_of(mesh); ++next) {
-      const std::uint32_t most = joints_asked(view.skin_vertices[next]);
+      const uint32_t most = joints_asked(view.skin_vertices[next]);
       while (!waiting.empty() && waiting.back().asked <= most) waiting.pop_back();
       waiting.push_back({next, most});
     }
-    asked[i] = std::ranges::lower_bound(waiting, std::size_t{mesh.first_skin_vertex}, {}, &Waiting::vertex)->asked;
+    asked[i] = std::ranges::lower_bound(waiting, size_t{mesh.first_skin_vertex}, {}, &Waiting::vertex)->asked;
   }
   return asked;
 }
 
 std::string skin_vertex_fault(const View& view) {
-  for (std::size_t i = 0; i < view.skin_vertices.size(); ++i) {
-    std::uint32_t sum = 0;
-    for (const std::uint32_t pair : view.skin_vertices[i].weights) sum += (pair & 0xFFFFu) + (pair >> 16);
+  for (size_t i = 0; i < view.skin_vertices.size(); ++i) {
+    uint32_t sum = 0;
+    for (const uint32_t pair : view.skin_vertices[i].weights) sum += (pair & 0xFFFFu) + (pair >> 16);
     if (sum != 65535) return at("skin_vertices", i) + ".weights: sum to " + std::to_string(sum) + ", not 65535";
   }
   return {};
 }
 
 std::string skin_fault(const View& view) {
-  for (std::size_t i = 0; i < view.meshes.size(); ++i) {
+  for (size_t i = 0; i < view.meshes.size(); ++i) {
     const Mesh& mesh = view.meshes[i];
     if (mesh.skin_vertex_count != 0 && mesh.skin_vertex_count != mesh.vertex_count) {
       return at("meshes", i) + ".skin_vertex_count: " + std::to_string(mesh.skin_vertex_count) +
              " is neither 0 nor its " + std::to_string(mesh.vertex_count) + " vertices";
     }
   }
-  const std::vector<std::uint32_t> asked = joints_asked_by_meshes(view);
-  for (std::size_t i = 0; i < view.instances.size(); ++i) {
+  const std::vector<uint32_t> asked = joints_asked_by_meshes(view);
+  for (size_t i = 0; i < view.instances.size(); ++i) {
     const Instance& instance = view.instances[i];
     if (instance.dynamic == 0 && (instance.skin != none || instance.node != none)) {
       return at("instances", i) + ".dynamic: 0 where a node or a skin moves it";

@@ -38,13 +38,13 @@ struct Trees {
   const char* name;
   const char* items_name;
   std::span<const BvhNode> nodes;
-  std::uint64_t item_count;
-  std::uint64_t next_item = 0;  // after the leaves so far
+  uint64_t item_count;
+  uint64_t next_item = 0;  // after the leaves so far
 };
 
-std::string leaf_fault(Trees& trees, std::uint32_t number) {
+std::string leaf_fault(Trees& trees, uint32_t number) {
   const BvhNode& node = trees.nodes[number];
-  const std::uint64_t first = node.leaf / 16, count = node.leaf % 16;
+  const uint64_t first = node.leaf / 16, count = node.leaf % 16;
   if (node.skip != number + 1) return ".skip: " + text(node.skip) + " where a leaf's is " + text(number + 1u);
   if (count == 0) return ".leaf: no items (" + text(node.leaf) + ")";
   if (first != trees.next_item) {
@@ -57,7 +57,7 @@ std::string leaf_fault(Trees& trees, std::uint32_t number) {
 }
 
 /// Of an inner node of a tree that ends at `end`.
-std::string children_fault(const Trees& trees, std::uint32_t number, std::uint32_t end) {
+std::string children_fault(const Trees& trees, uint32_t number, uint32_t end) {
   const BvhNode& node = trees.nodes[number];
   if (node.skip <= number + 1 || node.skip > end) {
     return ".skip: " + text(node.skip) + " is not above its first child " + text(number + 1u) +
@@ -78,11 +78,11 @@ std::string children_fault(const Trees& trees, std::uint32_t number, std::uint32
 }
 
 /// Of the tree whose nodes are `first` to `end`, at least one. Its leaves' items are the next ones.
-std::string tree_fault(Trees& trees, std::uint32_t first, std::uint32_t end) {
+std::string tree_fault(Trees& trees, uint32_t first, uint32_t end) {
   if (trees.nodes[first].skip != end) {
     return at(trees.name, first) + ".skip: " + text(trees.nodes[first].skip) + " where its tree ends at " + text(end);
   }
-  for (std::uint32_t i = first; i < end; ++i) {
+  for (uint32_t i = first; i < end; ++i) {
     const BvhNode& node = trees.nodes[i];
     if (!is_ordered(node.bounds_min, node.bounds_max)) {
       return at(trees.name, i) + ".bounds_min: above bounds_max";
@@ -97,7 +97,7 @@ std::string tree_fault(Trees& trees, std::uint32_t first, std::uint32_t end) {
 /// Of a section that is one tree.
 std::string single_tree_fault(Trees trees) {
   if (!trees.nodes.empty()) {
-    std::string line = tree_fault(trees, 0, static_cast<std::uint32_t>(trees.nodes.size()));
+    std::string line = tree_fault(trees, 0, static_cast<uint32_t>(trees.nodes.size()));
     if (!line.empty()) return line;
   }
   if (trees.next_item == trees.item_count) return {};
@@ -107,11 +107,11 @@ std::string single_tree_fault(Trees trees) {
 
 /// Each of what can be an item once: `is_wanted[n]` says whether n is one.
 template <typename Ref>
-std::string items_fault(const char* name, std::span<const Ref> items, std::uint32_t Ref::*number,
-                        const std::string& field, const char* wanted, std::vector<bool> is_wanted) {
-  const auto count = static_cast<std::uint64_t>(std::count(is_wanted.begin(), is_wanted.end(), true));
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const std::uint32_t n = items[i].*number;
+std::string items_fault(const char* name, std::span<const Ref> items, uint32_t Ref::*number, const std::string& field,
+                        const char* wanted, std::vector<bool> is_wanted) {
+  const auto count = static_cast<uint64_t>(std::count(is_wanted.begin(), is_wanted.end(), true));
+  for (size_t i = 0; i < items.size(); ++i) {
+    const uint32_t n = items[i].*number;
     if (!is_wanted[n]) {
       return at(name, i) + "." + field + ": " + text(n) + " is there already, or is not one of the " + wanted;
     }
@@ -122,11 +122,11 @@ std::string items_fault(const char* name, std::span<const Ref> items, std::uint3
 }
 
 std::string batch_boxes_fault(const View& view) {
-  for (std::size_t i = 0; i < view.batch_bvh.size(); ++i) {
+  for (size_t i = 0; i < view.batch_bvh.size(); ++i) {
     const BvhNode& node = view.batch_bvh[i];
     if (node.leaf == none) continue;
-    for (std::uint32_t item = node.leaf / 16; item < node.leaf / 16 + node.leaf % 16; ++item) {
-      const std::uint32_t number = view.batch_bvh_items[item].batch_instance;
+    for (uint32_t item = node.leaf / 16; item < node.leaf / 16 + node.leaf % 16; ++item) {
+      const uint32_t number = view.batch_bvh_items[item].batch_instance;
       const BatchInstance& draw = view.batch_instances[number];
       if (!holds(node, draw.bounds_min_ws, draw.bounds_max_ws)) {
         return at("batch_bvh", i) + ": its box does not hold that of batch instance " + text(number);
@@ -144,7 +144,7 @@ std::string batch_bvh_fault(const View& view) {
   }
   if (view.batch_bvh.empty()) return {};
   std::vector<bool> is_static(view.batch_instances.size());
-  for (std::size_t i = 0; i < is_static.size(); ++i) {
+  for (size_t i = 0; i < is_static.size(); ++i) {
     is_static[i] = view.instances[view.batch_instances[i].instance].dynamic == 0;
   }
   if (std::string line = items_fault("batch_bvh_items", view.batch_bvh_items, &BatchRef::batch_instance,
@@ -172,11 +172,10 @@ std::string instance_bvh_fault(const View& view) {
 
 /// Of the items from `first` to `end`, which must be the triangles of the mesh's batches. `is_open` has no bit set
 /// before and after.
-std::string triangles_fault(const View& view, std::size_t m, std::uint64_t first, std::uint64_t end,
-                            std::vector<bool>& is_open) {
+std::string triangles_fault(const View& view, size_t m, uint64_t first, uint64_t end, std::vector<bool>& is_open) {
   const Mesh& mesh = view.meshes[m];
-  std::uint64_t triangles = 0;
-  for (std::uint32_t b = mesh.first_batch; b < mesh.first_batch + mesh.batch_count; ++b) {
+  uint64_t triangles = 0;
+  for (uint32_t b = mesh.first_batch; b < mesh.first_batch + mesh.batch_count; ++b) {
     const Batch& batch = view.batches[b];
     triangles += batch.index_count / 3;
     if (triangles > end - first) break;  // before more work than the mesh's nodes pay for
@@ -186,8 +185,8 @@ std::string triangles_fault(const View& view, std::size_t m, std::uint64_t first
   if (triangles != end - first) {
     return at("meshes", m) + ": its triangle BVH has " + text(end - first) + " items, not one for each triangle";
   }
-  for (std::uint64_t i = first; i < end; ++i) {
-    const std::uint32_t triangle = view.triangle_bvh_items[i].triangle;
+  for (uint64_t i = first; i < end; ++i) {
+    const uint32_t triangle = view.triangle_bvh_items[i].triangle;
     if (triangle >= is_open.size() || !is_open[triangle]) {
       return at("triangle_bvh_items", i) + ".triangle: " + text(triangle) +
              " is there already, or is not in a batch of its mesh";
@@ -198,7 +197,7 @@ std::string triangles_fault(const View& view, std::size_t m, std::uint64_t first
 }
 
 std::string areas_fault(const View& view) {
-  for (std::size_t i = 0; i < view.triangle_bvh.size(); ++i) {
+  for (size_t i = 0; i < view.triangle_bvh.size(); ++i) {
     if (view.triangle_bvh[i].leaf != none) continue;
     const double area = view.triangle_bvh_areas[i].area_m2;
     const double sum = double{view.triangle_bvh_areas[i + 1].area_m2} +
@@ -214,11 +213,11 @@ std::string areas_fault(const View& view) {
 
 std::string triangle_bvh_fault(const View& view) {
   Trees trees{"triangle_bvh", "triangle_bvh_items", view.triangle_bvh, view.triangle_bvh_items.size()};
-  std::uint32_t next_node = 0;
+  uint32_t next_node = 0;
   std::vector<bool> is_open(view.triangle_bvh.empty() ? 0 : view.indices.size() / 3);
-  for (std::size_t m = 0; m < view.meshes.size() && !view.triangle_bvh.empty(); ++m) {
+  for (size_t m = 0; m < view.meshes.size() && !view.triangle_bvh.empty(); ++m) {
     const Mesh& mesh = view.meshes[m];
-    const std::uint64_t first_item = trees.next_item;
+    const uint64_t first_item = trees.next_item;
     if (mesh.node_count > 0) {
       if (mesh.first_node != next_node) {
         return at("meshes", m) + ".first_node: " + text(mesh.first_node) + " where the trees before it end with " +

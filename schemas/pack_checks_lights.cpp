@@ -23,7 +23,7 @@ bool holds_its_light(const Light& light) {
 }
 
 std::string bounds_fault(const View& view) {
-  for (std::size_t i = 0; i < view.lights.size(); ++i) {
+  for (size_t i = 0; i < view.lights.size(); ++i) {
     const Light& light = view.lights[i];
     if (light.type != LightType::directional) {
       if (!holds_its_light(light)) return at("lights", i) + ".bounds_center_ws: the light is not in its bounds";
@@ -36,9 +36,9 @@ std::string bounds_fault(const View& view) {
 
 /// Numbered from 1, in the order of the first light of each.
 std::string group_fault(const View& view) {
-  std::uint32_t groups = 0;
-  for (std::size_t i = 0; i < view.lights.size(); ++i) {
-    const std::uint32_t group = view.lights[i].group;
+  uint32_t groups = 0;
+  for (size_t i = 0; i < view.lights.size(); ++i) {
+    const uint32_t group = view.lights[i].group;
     if (group > groups + 1) {
       return at("lights", i) + ".group: " + std::to_string(group) + " comes after " + std::to_string(groups) +
              " groups";
@@ -51,15 +51,15 @@ std::string group_fault(const View& view) {
 /// A traversal goes on with the next node or with `miss`, so it ends if `miss` is always ahead. Every node ends within
 /// the one that it is in; each point and spot light has one leaf.
 std::string bvh_fault(const View& view) {
-  const std::size_t count = view.light_bvh.size();
+  const size_t count = view.light_bvh.size();
   std::vector<bool> seen(view.lights.size(), false);
-  std::vector<std::size_t> ends = {count};  // of the nodes that this one is in
-  std::size_t leaves = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<size_t> ends = {count};  // of the nodes that this one is in
+  size_t leaves = 0;
+  for (size_t i = 0; i < count; ++i) {
     const LightBvhNode& node = view.light_bvh[i];
     while (ends.size() > 1 && ends.back() == i) ends.pop_back();
     const bool is_leaf = node.light != none;
-    const std::size_t least = is_leaf ? i + 1 : i + 2, most = is_leaf ? i + 1 : ends.back();
+    const size_t least = is_leaf ? i + 1 : i + 2, most = is_leaf ? i + 1 : ends.back();
     if (node.miss < least || node.miss > most) {
       return at("light_bvh", i) + ".miss: " + std::to_string(node.miss) + " is not from " + std::to_string(least) +
              " to " + std::to_string(most);
@@ -77,7 +77,7 @@ std::string bvh_fault(const View& view) {
   }
   const auto directional = std::count_if(view.lights.begin(), view.lights.end(),
                                          [](const Light& light) { return light.type == LightType::directional; });
-  const std::size_t placed = view.lights.size() - static_cast<std::size_t>(directional);
+  const size_t placed = view.lights.size() - static_cast<size_t>(directional);
   if (count == 0 || leaves == placed) return {};
   return "light_bvh: " + std::to_string(leaves) + " leaves for " + std::to_string(placed) + " point and spot lights";
 }

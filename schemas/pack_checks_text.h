@@ -19,7 +19,7 @@ inline std::string text(std::unsigned_integral auto value) {
   return std::to_string(value);
 }
 
-inline std::string at(const char* section, std::size_t i) {
+inline std::string at(const char* section, size_t i) {
   return std::string(section) + "[" + text(i) + "]";
 }
 

@@ -11,7 +11,7 @@ namespace chandelier::pack {
 namespace {
 
 std::string no_grid_fault(const View& view) {
-  const auto fault = [](const char* section, std::size_t count) {
+  const auto fault = [](const char* section, size_t count) {
     return std::string(section) + ": " + text(count) + " records without a voxel_grid";
   };
   if (!view.voxel_cells.empty()) return fault("voxel_cells", view.voxel_cells.size());
@@ -24,8 +24,7 @@ std::string no_grid_fault(const View& view) {
 
 /// The upper end of the grid along an axis.
 double grid_end(const VoxelGrid& grid, int axis) {
-  return double{grid.bounds_min_ws[axis]} +
-         double{grid.cell_size_m[axis]} * grid.resolution[static_cast<std::size_t>(axis)];
+  return double{grid.bounds_min_ws[axis]} + double{grid.cell_size_m[axis]} * grid.resolution[static_cast<size_t>(axis)];
 }
 
 std::string grid_fault(const View& view) {
@@ -37,7 +36,7 @@ std::string grid_fault(const View& view) {
       return place + text(grid.cell_size_m[axis]) + " makes the grid end beyond a float";
     }
   }
-  const std::uint64_t cells = std::uint64_t{grid.resolution[0]} * grid.resolution[1] * grid.resolution[2];
+  const uint64_t cells = uint64_t{grid.resolution[0]} * grid.resolution[1] * grid.resolution[2];
   if (view.voxel_cells.size() != cells) {
     return "voxel_cells: " + text(view.voxel_cells.size()) + " records for a resolution of " + text(cells) + " cells";
   }
@@ -50,7 +49,7 @@ std::string grid_fault(const View& view) {
 /// Every static triangle is inside: what lies outside would be in no cell.
 std::string extent_fault(const View& view) {
   const VoxelGrid& grid = view.voxel_grid[0];
-  for (std::size_t i = 0; i < view.batch_instances.size(); ++i) {
+  for (size_t i = 0; i < view.batch_instances.size(); ++i) {
     const BatchInstance& record = view.batch_instances[i];
     if (view.instances[record.instance].dynamic) continue;
     for (int axis = 0; axis < 3; ++axis) {
@@ -70,25 +69,25 @@ std::string extent_fault(const View& view) {
 /// Cells in their order, then what is always drawn: each run belongs to one of them.
 std::string cells_fault(const View& view) {
   const VoxelGrid& grid = view.voxel_grid[0];
-  std::uint64_t next = 0;
-  for (std::size_t i = 0; i < view.voxel_cells.size(); ++i) {
+  uint64_t next = 0;
+  for (size_t i = 0; i < view.voxel_cells.size(); ++i) {
     const VoxelCell& cell = view.voxel_cells[i];
     if (cell.first_run != next) {
-      return at("voxel_cells", i) + ".first_run: " + text(std::uint64_t{cell.first_run}) +
+      return at("voxel_cells", i) + ".first_run: " + text(uint64_t{cell.first_run}) +
              " where the cell before ends at " + text(next);
     }
     next += cell.run_count;
     const bool bit = (view.voxel_occupancy[i / 32].bits >> i % 32 & 1) != 0;
     if (bit != (cell.run_count != 0)) {
-      return at("voxel_occupancy", i / 32) + ".bits: bit " + text(i % 32) + " is " + text(std::uint64_t{bit}) +
-             " where the cell has " + text(std::uint64_t{cell.run_count}) + " runs";
+      return at("voxel_occupancy", i / 32) + ".bits: bit " + text(i % 32) + " is " + text(uint64_t{bit}) +
+             " where the cell has " + text(uint64_t{cell.run_count}) + " runs";
     }
   }
-  if (const std::size_t rest = view.voxel_cells.size() % 32; rest && view.voxel_occupancy.back().bits >> rest) {
+  if (const size_t rest = view.voxel_cells.size() % 32; rest && view.voxel_occupancy.back().bits >> rest) {
     return at("voxel_occupancy", view.voxel_occupancy.size() - 1) + ".bits: bits past the last cell are set";
   }
   if (grid.no_cull_first_run != next) {
-    return "voxel_grid[0].no_cull_first_run: " + text(std::uint64_t{grid.no_cull_first_run}) +
+    return "voxel_grid[0].no_cull_first_run: " + text(uint64_t{grid.no_cull_first_run}) +
            " where the last cell ends at " + text(next);
   }
   next += grid.no_cull_run_count;
@@ -99,36 +98,36 @@ std::string cells_fault(const View& view) {
 
 std::string indices_fault(const View& view, const VoxelRun& run) {
   const bool clipped = run.instance == none;
-  const std::size_t count = clipped ? view.voxel_vertices.size() : view.positions.size();
-  std::uint32_t most = 0;
+  const size_t count = clipped ? view.voxel_vertices.size() : view.positions.size();
+  uint32_t most = 0;
   for (const VoxelIndex& index : view.voxel_indices.subspan(run.first_index, run.index_count)) {
     most = std::max(most, index.vertex);
   }
   if (most < count) return {};
-  for (std::size_t i = run.first_index; i < std::size_t{run.first_index} + run.index_count; ++i) {
+  for (size_t i = run.first_index; i < size_t{run.first_index} + run.index_count; ++i) {
     if (view.voxel_indices[i].vertex < count) continue;
-    return at("voxel_indices", i) + ".vertex: " + text(std::uint64_t{view.voxel_indices[i].vertex}) +
-           " is not below the " + text(count) + (clipped ? " voxel_vertices" : " positions");
+    return at("voxel_indices", i) + ".vertex: " + text(uint64_t{view.voxel_indices[i].vertex}) + " is not below the " +
+           text(count) + (clipped ? " voxel_vertices" : " positions");
   }
   return {};
 }
 
 std::string runs_fault(const View& view) {
   const bool separate = view.voxel_grid[0].mode == VoxelMode::separate;
-  std::uint64_t next = 0;
-  for (std::size_t i = 0; i < view.voxel_runs.size(); ++i) {
+  uint64_t next = 0;
+  for (size_t i = 0; i < view.voxel_runs.size(); ++i) {
     const VoxelRun& run = view.voxel_runs[i];
     if (run.first_index != next) {
-      return at("voxel_runs", i) + ".first_index: " + text(std::uint64_t{run.first_index}) +
+      return at("voxel_runs", i) + ".first_index: " + text(uint64_t{run.first_index}) +
              " where the run before ends at " + text(next);
     }
     if (run.index_count % 3 != 0) {
-      return at("voxel_runs", i) + ".index_count: " + text(std::uint64_t{run.index_count}) + " is not a multiple of 3";
+      return at("voxel_runs", i) + ".index_count: " + text(uint64_t{run.index_count}) + " is not a multiple of 3";
     }
     next += run.index_count;
     if (run.instance == none && separate) return at("voxel_runs", i) + ".instance: none where nothing is clipped";
     if (run.instance != none && view.instances[run.instance].dynamic) {
-      return at("voxel_runs", i) + ".instance: " + text(std::uint64_t{run.instance}) + " is dynamic";
+      return at("voxel_runs", i) + ".instance: " + text(uint64_t{run.instance}) + " is dynamic";
     }
     if (std::string line = indices_fault(view, run); !line.empty()) return line;
   }

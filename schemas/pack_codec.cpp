@@ -21,17 +21,17 @@ namespace {
 // data and text are large and gain little. Layouts are compared on a sample, with a faster level that ranks them the
 // same.
 constexpr int record_level = 19, byte_level = 9, trial_level = 9;
-constexpr std::size_t sample_bytes = std::size_t{1} << 18;
+constexpr size_t sample_bytes = size_t{1} << 18;
 
-constexpr std::size_t word = 4;
+constexpr size_t word = 4;
 
 // zstd's frames without content start with this and a 32-bit size of what follows.
-constexpr std::uint32_t filler_magic = 0x184D2A50;
-constexpr std::size_t filler_head = 8;
+constexpr uint32_t filler_magic = 0x184D2A50;
+constexpr size_t filler_head = 8;
 
 using Bytes = std::span<const std::byte>;
 
-template <typename T, std::size_t (*release)(T*)>
+template <typename T, size_t (*release)(T*)>
 struct Release {
   void operator()(T* context) const { release(context); }
 };
@@ -43,73 +43,73 @@ std::vector<std::byte> compress(Bytes content, int level) {
   thread_local const Compressor context(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
   std::vector<std::byte> frame(ZSTD_compressBound(content.size()));
-  const std::size_t size =
+  const size_t size =
       ZSTD_compressCCtx(context.get(), frame.data(), frame.size(), content.data(), content.size(), level);
   if (ZSTD_isError(size)) throw std::bad_alloc();  // the only way to fail with enough space
   frame.resize(size);
   return frame;
 }
 
-std::size_t chunk_records(std::size_t stride) {
-  return std::max<std::size_t>(3, codec_chunk_bytes / stride / 3 * 3);  // whole triangles where records are corners
+size_t chunk_records(size_t stride) {
+  return std::max<size_t>(3, codec_chunk_bytes / stride / 3 * 3);  // whole triangles where records are corners
 }
 
-std::size_t chunk_count(std::size_t records, std::size_t stride) {
+size_t chunk_count(size_t records, size_t stride) {
   return (records + chunk_records(stride) - 1) / chunk_records(stride);
 }
 
 template <typename Byte>
-std::span<Byte> chunk_of(std::span<Byte> records, std::size_t stride, std::size_t chunk) {
-  const std::size_t bytes = chunk_records(stride) * stride, first = chunk * bytes;
+std::span<Byte> chunk_of(std::span<Byte> records, size_t stride, size_t chunk) {
+  const size_t bytes = chunk_records(stride) * stride, first = chunk * bytes;
   return records.subspan(first, std::min(bytes, records.size() - first));
 }
 
-std::span<const std::uint32_t> words_of(Bytes bytes) {
-  return {reinterpret_cast<const std::uint32_t*>(bytes.data()), bytes.size() / word};
+std::span<const uint32_t> words_of(Bytes bytes) {
+  return {reinterpret_cast<const uint32_t*>(bytes.data()), bytes.size() / word};
 }
 
 // ---- Encoding
 
 /// A section or an image that is being encoded.
 struct Coding {
-  std::size_t place;  // of what is returned
+  size_t place;  // of what is returned
   bool holds_corners;
   Bytes records;
-  std::size_t stride;
+  size_t stride;
   Codec codec = Codec::zstd;
   Layouts layouts = {};  // for Codec::columns
   std::vector<std::vector<std::byte>> frames = {};
-  std::vector<std::uint32_t> vertices_before = {};  // for Codec::triangles: of each frame
+  std::vector<uint32_t> vertices_before = {};  // for Codec::triangles: of each frame
 };
 
 /// Finds the codec that makes a sample from the middle smallest.
 void choose_codec(Coding& coding) {
   if (coding.stride % word != 0) return;
   const auto cost = [](Bytes coded) { return compress(coded, trial_level).size(); };
-  const std::size_t count = coding.records.size() / coding.stride;
-  const std::size_t sampled = std::min(count, sample_bytes / coding.stride / 3 * 3 + 3);
-  const std::size_t first = (count - sampled) / 2 / 3 * 3;
+  const size_t count = coding.records.size() / coding.stride;
+  const size_t sampled = std::min(count, sample_bytes / coding.stride / 3 * 3 + 3);
+  const size_t first = (count - sampled) / 2 / 3 * 3;
   const Bytes sample = coding.records.subspan(first * coding.stride, sampled * coding.stride);
   coding.codec = Codec::columns;
   coding.layouts = choose_layouts(sample, coding.stride, cost);
   if (!coding.holds_corners || !has_triangle_codec()) return;
   const auto corners = words_of(sample);
-  const std::size_t columns_cost = cost(to_columns(sample, coding.stride, coding.layouts));
-  const std::size_t triangles_cost = cost(to_triangle_code(corners, *std::ranges::min_element(corners)));
+  const size_t columns_cost = cost(to_columns(sample, coding.stride, coding.layouts));
+  const size_t triangles_cost = cost(to_triangle_code(corners, *std::ranges::min_element(corners)));
   if (triangles_cost < columns_cost) coding.codec = Codec::triangles;
 }
 
 /// Of each chunk one above the largest corner before it: the next vertex that its triangles use for the first time.
-std::vector<std::uint32_t> vertices_before_chunks(const Coding& coding) {
-  std::vector<std::uint32_t> before(coding.frames.size());
-  for (std::size_t chunk = 1; chunk < before.size(); ++chunk) {
+std::vector<uint32_t> vertices_before_chunks(const Coding& coding) {
+  std::vector<uint32_t> before(coding.frames.size());
+  for (size_t chunk = 1; chunk < before.size(); ++chunk) {
     const auto corners = words_of(chunk_of(coding.records, word, chunk - 1));
     before[chunk] = std::max(before[chunk - 1], *std::ranges::max_element(corners) + 1);
   }
   return before;
 }
 
-void encode_chunk(Coding& coding, std::size_t chunk) {
+void encode_chunk(Coding& coding, size_t chunk) {
   const Bytes records = chunk_of(coding.records, coding.stride, chunk);
   std::vector<std::byte>& frame = coding.frames[chunk];
   if (coding.codec == Codec::zstd) {
@@ -122,11 +122,11 @@ void encode_chunk(Coding& coding, std::size_t chunk) {
 }
 
 /// Appends a zstd frame without content, of at least its head, so that all that is stored has `bytes` or more.
-void fill_up(std::vector<std::byte>& stored, std::size_t bytes) {
+void fill_up(std::vector<std::byte>& stored, size_t bytes) {
   if (stored.size() >= bytes) return;
-  const std::size_t size = std::max(bytes - stored.size(), filler_head);
-  const std::uint32_t head[2] = {filler_magic, static_cast<std::uint32_t>(size - filler_head)};
-  const std::size_t at = stored.size();
+  const size_t size = std::max(bytes - stored.size(), filler_head);
+  const uint32_t head[2] = {filler_magic, static_cast<uint32_t>(size - filler_head)};
+  const size_t at = stored.size();
   stored.resize(at + size);
   std::memcpy(&stored[at], head, filler_head);
 }
@@ -136,14 +136,14 @@ Encoded encoded_of(const Coding& coding) {
   Encoded encoded{coding.codec, {}};
   for (const auto& frame : coding.frames) encoded.bytes.insert(encoded.bytes.end(), frame.begin(), frame.end());
   fill_up(encoded.bytes, coding.records.size() / max_decode_ratio);
-  const std::size_t raw_size = coding.records.size();
+  const size_t raw_size = coding.records.size();
   return encoded.bytes.size() <= raw_size - raw_size / 20 ? encoded : Encoded{};
 }
 
 // ---- Decoding
 
 /// Codes of one chunk may be this much longer than its records.
-std::size_t coded_bound(Codec codec, std::size_t record_bytes, std::size_t stride) {
+size_t coded_bound(Codec codec, size_t record_bytes, size_t stride) {
   if (codec == Codec::zstd) return record_bytes;
   return codec == Codec::columns ? columns_bytes(record_bytes, stride) : triangle_code_bound(record_bytes / word);
 }
@@ -156,12 +156,12 @@ std::string decode_chunk(const Coded& each, Bytes frame, std::span<std::byte> re
   std::vector<std::byte> coded(each.codec == Codec::zstd ? 0 : content);
   const std::span<std::byte> target = each.codec == Codec::zstd ? records : std::span(coded);
   if (content != target.size()) return "a frame of a wrong size";
-  const std::size_t got = ZSTD_decompressDCtx(context.get(), target.data(), target.size(), frame.data(), frame.size());
+  const size_t got = ZSTD_decompressDCtx(context.get(), target.data(), target.size(), frame.data(), frame.size());
   if (ZSTD_isError(got)) return ZSTD_getErrorName(got);
   if (got != content) return "a frame of a wrong size";
   if (each.codec == Codec::columns && !from_columns(coded, each.stride_bytes, records)) return "malformed columns";
   if (each.codec == Codec::triangles &&
-      !from_triangle_code(coded, {reinterpret_cast<std::uint32_t*>(records.data()), records.size() / word})) {
+      !from_triangle_code(coded, {reinterpret_cast<uint32_t*>(records.data()), records.size() / word})) {
     return "malformed triangles";
   }
   return {};
@@ -169,40 +169,40 @@ std::string decode_chunk(const Coded& each, Bytes frame, std::span<std::byte> re
 
 /// One frame to decode.
 struct Task {
-  std::size_t number, chunk;  // of what is coded, and in it
+  size_t number, chunk;  // of what is coded, and in it
   Bytes frame;
 };
 
 /// Appends the frames, one a chunk, which must fill what is stored.
-std::string find_frames(const Coded& each, std::size_t number, std::vector<Task>& tasks) {
-  const std::size_t chunks = chunk_count(each.records.size() / each.stride_bytes, each.stride_bytes);
+std::string find_frames(const Coded& each, size_t number, std::vector<Task>& tasks) {
+  const size_t chunks = chunk_count(each.records.size() / each.stride_bytes, each.stride_bytes);
   Bytes rest = each.stored;
-  for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-    const std::size_t size = ZSTD_findFrameCompressedSize(rest.data(), rest.size());
+  for (size_t chunk = 0; chunk < chunks; ++chunk) {
+    const size_t size = ZSTD_findFrameCompressedSize(rest.data(), rest.size());
     if (ZSTD_isError(size)) return ZSTD_getErrorName(size);
     tasks.push_back({number, chunk, rest.first(size)});
     rest = rest.subspan(size);
   }
-  std::uint32_t head[2] = {};
+  uint32_t head[2] = {};
   if (rest.size() >= filler_head) std::memcpy(head, rest.data(), filler_head);
   const bool filler = head[0] == filler_magic && head[1] == rest.size() - filler_head;
   return rest.empty() || filler ? "" : "bytes after the last frame";
 }
 
 /// Encodes in threads; gives `count` results.
-std::vector<Encoded> encode(std::vector<Coding> codings, std::size_t count, std::size_t most_threads) {
-  parallel_for(codings.size(), most_threads, [&](std::size_t i) {
+std::vector<Encoded> encode(std::vector<Coding> codings, size_t count, size_t most_threads) {
+  parallel_for(codings.size(), most_threads, [&](size_t i) {
     Coding& coding = codings[i];
     coding.frames.resize(chunk_count(coding.records.size() / coding.stride, coding.stride));
     choose_codec(coding);
     if (coding.codec == Codec::triangles) coding.vertices_before = vertices_before_chunks(coding);
   });
-  std::vector<std::pair<std::size_t, std::size_t>> chunks;  // of codings and their frames
-  for (std::size_t i = 0; i < codings.size(); ++i) {
-    for (std::size_t j = 0; j < codings[i].frames.size(); ++j) chunks.emplace_back(i, j);
+  std::vector<std::pair<size_t, size_t>> chunks;  // of codings and their frames
+  for (size_t i = 0; i < codings.size(); ++i) {
+    for (size_t j = 0; j < codings[i].frames.size(); ++j) chunks.emplace_back(i, j);
   }
   parallel_for(chunks.size(), most_threads,
-               [&](std::size_t i) { encode_chunk(codings[chunks[i].first], chunks[i].second); });
+               [&](size_t i) { encode_chunk(codings[chunks[i].first], chunks[i].second); });
   std::vector<Encoded> encoded(count);
   for (const Coding& coding : codings) encoded[coding.place] = encoded_of(coding);
   return encoded;
@@ -210,9 +210,9 @@ std::vector<Encoded> encode(std::vector<Coding> codings, std::size_t count, std:
 
 }  // namespace
 
-std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads) {
+std::vector<Encoded> encode_sections(const View& view, size_t most_threads) {
   std::vector<Coding> codings;
-  for (std::size_t i = 0; i < section_infos.size(); ++i) {
+  for (size_t i = 0; i < section_infos.size(); ++i) {
     const Bytes records = section_bytes(view, i);
     const auto& [kind, name, stride, is_always_raw] = section_infos[i];
     if (records.empty() || is_always_raw) continue;
@@ -222,15 +222,15 @@ std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads)
   return encode(std::move(codings), section_infos.size(), most_threads);
 }
 
-std::vector<Encoded> encode_images(std::span<const std::span<const std::byte>> images, std::size_t most_threads) {
+std::vector<Encoded> encode_images(std::span<const std::span<const std::byte>> images, size_t most_threads) {
   std::vector<Coding> codings;
-  for (std::size_t i = 0; i < images.size(); ++i) {
+  for (size_t i = 0; i < images.size(); ++i) {
     if (!images[i].empty()) codings.push_back({i, false, images[i], 1});
   }
   return encode(std::move(codings), images.size(), most_threads);
 }
 
-std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count) {
+std::string coded_size_fault(Codec codec, uint32_t stride_bytes, uint64_t stored_bytes, uint64_t count) {
   if (codec == Codec::triangles && !has_triangle_codec()) {
     return "codec: triangles needs meshoptimizer, which this build lacks; bake without --compress";
   }
@@ -245,17 +245,17 @@ std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint6
   return {};
 }
 
-std::vector<std::string> decode_all(std::span<const Coded> coded, std::size_t most_threads) {
+std::vector<std::string> decode_all(std::span<const Coded> coded, size_t most_threads) {
   std::vector<std::string> faults(coded.size());
   std::vector<Task> tasks;
-  for (std::size_t i = 0; i < coded.size(); ++i) faults[i] = find_frames(coded[i], i, tasks);
+  for (size_t i = 0; i < coded.size(); ++i) faults[i] = find_frames(coded[i], i, tasks);
   std::vector<std::string> task_faults(tasks.size());
-  parallel_for(tasks.size(), most_threads, [&](std::size_t i) {
+  parallel_for(tasks.size(), most_threads, [&](size_t i) {
     const Coded& each = coded[tasks[i].number];
     if (!faults[tasks[i].number].empty()) return;
     task_faults[i] = decode_chunk(each, tasks[i].frame, chunk_of(each.records, each.stride_bytes, tasks[i].chunk));
   });
-  for (std::size_t i = tasks.size(); i-- > 0;) {
+  for (size_t i = tasks.size(); i-- > 0;) {
     if (!task_faults[i].empty()) faults[tasks[i].number] = task_faults[i];
   }
   return faults;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,15 +20,15 @@ struct Encoded {
 
 /// Encodes each section of section_infos with the codec that is best on a sample of it; those that are always raw not.
 /// The same view gives the same bytes, whatever the number of threads; 0: all cores.
-std::vector<Encoded> encode_sections(const View& view, std::size_t most_threads = 0);
+std::vector<Encoded> encode_sections(const View& view, size_t most_threads = 0);
 
 /// Encodes each of `images` by zstd, like encode_sections().
-std::vector<Encoded> encode_images(std::span<const std::span<const std::byte>> images, std::size_t most_threads = 0);
+std::vector<Encoded> encode_images(std::span<const std::span<const std::byte>> images, size_t most_threads = 0);
 
 /// A section or an image that is stored with a codec, and where its records go; an image's are its bytes.
 struct Coded {
   Codec codec;
-  std::uint32_t stride_bytes;
+  uint32_t stride_bytes;
   std::span<const std::byte> stored;
   std::span<std::byte> records;  ///< Its size is a multiple of the stride; aligned for the records.
 };
@@ -35,9 +36,9 @@ struct Coded {
 /// The fault of the codec or of the sizes, which are not trusted; an empty string if decoding can be tried. Refuses
 /// records of more than about max_decode_ratio times the stored bytes, so a file's size limits what it can ask for: 10
 /// MB may ask for 10 GB, as valid sections of zeros do.
-std::string coded_size_fault(Codec codec, std::uint32_t stride_bytes, std::uint64_t stored_bytes, std::uint64_t count);
+std::string coded_size_fault(Codec codec, uint32_t stride_bytes, uint64_t stored_bytes, uint64_t count);
 
 /// Decodes all; none is raw and all passed coded_size_fault(). Gives for each what is wrong with it or an empty string.
-std::vector<std::string> decode_all(std::span<const Coded> coded, std::size_t most_threads = 0);
+std::vector<std::string> decode_all(std::span<const Coded> coded, size_t most_threads = 0);
 
 }  // namespace chandelier::pack

@@ -27,10 +27,10 @@ namespace chandelier::pack {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "packs are little-endian and used in place");
-static_assert(sizeof(std::size_t) == 8, "packs have 64-bit sizes");
+static_assert(sizeof(size_t) == 8, "packs have 64-bit sizes");
 
 /// Below this a thread takes longer to start than to help.
-constexpr std::size_t few_bytes = std::size_t{4} << 20;
+constexpr size_t few_bytes = size_t{4} << 20;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
   throw Error(path.string() + ": " + what);
@@ -40,19 +40,19 @@ constexpr std::size_t few_bytes = std::size_t{4} << 20;
   fail(path, std::string(what) + " (" + std::generic_category().message(error) + ")");
 }
 
-std::string in_parentheses(std::uint64_t value) {
+std::string in_parentheses(uint64_t value) {
   return " (" + std::to_string(value) + ")";
 }
 
-std::uint64_t align_up(std::uint64_t offset) {
+uint64_t align_up(uint64_t offset) {
   return (offset + section_alignment - 1) / section_alignment * section_alignment;
 }
 
 /// Calls `body` for each section, in threads where the file is big enough for that.
 template <typename Body>
-void for_each_section(std::uint64_t file_bytes, std::size_t count, std::size_t most_threads, const Body& body) {
+void for_each_section(uint64_t file_bytes, size_t count, size_t most_threads, const Body& body) {
   if (file_bytes >= few_bytes) return parallel_for(count, most_threads, body);
-  for (std::size_t i = 0; i < count; ++i) body(i);
+  for (size_t i = 0; i < count; ++i) body(i);
 }
 
 // ---- Writing
@@ -66,34 +66,34 @@ struct FileLayout {
 /// The file's layout, without checksums. `encoded` has one entry for each of section_infos, or is empty.
 FileLayout lay_out(const View& view, const std::vector<Encoded>& encoded) {
   FileLayout layout;
-  for (std::size_t i = 0; i < section_infos.size(); ++i) {
+  for (size_t i = 0; i < section_infos.size(); ++i) {
     const std::span<const std::byte> records = section_bytes(view, i);
     if (records.empty()) continue;
     const bool raw = encoded.empty() || encoded[i].codec == Codec::raw;
     const std::span<const std::byte> stored = raw ? records : std::span<const std::byte>(encoded[i].bytes);
     layout.sections.push_back(stored);
     SectionEntry& entry = layout.table.emplace_back();
-    entry.kind = static_cast<std::uint32_t>(section_infos[i].kind);
+    entry.kind = static_cast<uint32_t>(section_infos[i].kind);
     entry.codec = raw ? Codec::raw : encoded[i].codec;
     entry.size_bytes = stored.size();
     entry.stride_bytes = section_infos[i].stride_bytes;
     entry.count = records.size() / entry.stride_bytes;
   }
-  std::uint64_t end = sizeof(FileHeader) + layout.table.size() * sizeof(SectionEntry);
+  uint64_t end = sizeof(FileHeader) + layout.table.size() * sizeof(SectionEntry);
   for (SectionEntry& entry : layout.table) {
     entry.offset_bytes = align_up(end);
     end = entry.offset_bytes + entry.size_bytes;
   }
   std::memcpy(layout.header.magic.data(), magic.data(), layout.header.magic.size());
   layout.header.version = schema_version;
-  layout.header.section_count = static_cast<std::uint32_t>(layout.table.size());
+  layout.header.section_count = static_cast<uint32_t>(layout.table.size());
   layout.header.schema_hash = schema_hash;
   layout.header.file_bytes = end;
   return layout;
 }
 
 /// Writes the sections first, several at a time, then the table with their checksums. Returns the file's size.
-std::uint64_t write_all(TemporaryFile& file, const View& view, Compression compression, std::size_t most_threads) {
+uint64_t write_all(TemporaryFile& file, const View& view, Compression compression, size_t most_threads) {
   std::vector<Encoded> encoded;
   EncodedImages images;
   View stored = view;
@@ -106,13 +106,13 @@ std::uint64_t write_all(TemporaryFile& file, const View& view, Compression compr
     encoded = encode_sections(stored, most_threads);
   }
   FileLayout layout = lay_out(stored, encoded);
-  const auto write_one = [&](std::size_t i) {
+  const auto write_one = [&](size_t i) {
     const std::span<const std::byte> bytes = layout.sections[i];
     layout.table[i].checksum = XXH3_64bits(bytes.data(), bytes.size());
     file.write(layout.table[i].offset_bytes, bytes.data(), bytes.size());
   };
   for_each_section(layout.header.file_bytes, layout.table.size(), most_threads, write_one);
-  const std::size_t table_bytes = layout.table.size() * sizeof(SectionEntry);
+  const size_t table_bytes = layout.table.size() * sizeof(SectionEntry);
   layout.header.table_checksum = XXH3_64bits(layout.table.data(), table_bytes);
   file.write(0, &layout.header, sizeof(FileHeader));
   file.write(sizeof(FileHeader), layout.table.data(), table_bytes);
@@ -122,16 +122,16 @@ std::uint64_t write_all(TemporaryFile& file, const View& view, Compression compr
 // ---- Reading
 
 /// Maps a file, or copies its present content; MAP_FAILED and errno on failure.
-void* map_bytes(int descriptor, std::size_t size, Hold hold) {
+void* map_bytes(int descriptor, size_t size, Hold hold) {
   if (hold == Hold::mapped) return mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
   void* const data = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (data == MAP_FAILED) return data;
-  std::size_t done = 0;
+  size_t done = 0;
   while (done < size) {
     const ssize_t count = read(descriptor, static_cast<std::byte*>(data) + done, size - done);
     if (count < 0 && errno == EINTR) continue;
     if (count > 0) {
-      done += static_cast<std::size_t>(count);
+      done += static_cast<size_t>(count);
       continue;
     }
     const int error = count < 0 ? errno : ESTALE;  // 0: it became shorter
@@ -149,7 +149,7 @@ Mapping map_file(const std::filesystem::path& path, Hold hold) {
   struct stat status = {};
   const int stat_error = fstat(descriptor, &status) == 0 ? 0 : errno;
   const bool regular = stat_error == 0 && S_ISREG(status.st_mode);
-  const std::size_t size = regular ? static_cast<std::size_t>(status.st_size) : 0;
+  const size_t size = regular ? static_cast<size_t>(status.st_size) : 0;
   void* data = size > 0 ? map_bytes(descriptor, size, hold) : nullptr;
   const int map_error = data == MAP_FAILED ? errno : 0;
   close(descriptor);
@@ -161,7 +161,7 @@ Mapping map_file(const std::filesystem::path& path, Hold hold) {
   return mapping;
 }
 
-std::string header_fault(const FileHeader& header, std::uint64_t size) {
+std::string header_fault(const FileHeader& header, uint64_t size) {
   const std::string versions =
       "(version " + std::to_string(header.version) + ", this program reads " + std::to_string(schema_version) + ")";
   if (header.version < schema_version) return "a pack of an older chandelier-bake: bake it again " + versions;
@@ -186,15 +186,14 @@ std::string header_fault(const FileHeader& header, std::uint64_t size) {
   return {};
 }
 
-std::string wrong(const char* field, std::uint64_t is, std::uint64_t must_be) {
+std::string wrong(const char* field, uint64_t is, uint64_t must_be) {
   return std::string(field) + ": " + std::to_string(is) + " where " + std::to_string(must_be) + " must be";
 }
 
 /// Checks an entry whose section must start at `offset`. `info` is what its kind should be like.
-std::string entry_fault(const SectionEntry& entry, const SectionInfo& info, std::uint64_t offset,
-                        std::uint64_t file_bytes) {
+std::string entry_fault(const SectionEntry& entry, const SectionInfo& info, uint64_t offset, uint64_t file_bytes) {
   if (!is_valid(entry.codec)) {
-    return "codec: " + std::to_string(static_cast<std::uint32_t>(entry.codec)) + " is no Codec";
+    return "codec: " + std::to_string(static_cast<uint32_t>(entry.codec)) + " is no Codec";
   }
   if (info.is_always_raw && entry.codec != Codec::raw) {
     return "codec: " + std::string(name_of(entry.codec)) + " where raw must be";
@@ -224,7 +223,7 @@ bool all_zero(std::span<const std::byte> bytes) {
 /// A table entry that passed entry_fault().
 struct Found {
   SectionEntry entry;
-  std::size_t info;  // of section_infos
+  size_t info;  // of section_infos
   std::string place;
 };
 
@@ -236,19 +235,18 @@ std::string in_section(const Found& found, const std::string& line) {
 /// alignment. So none can overlap, and every byte of the file is covered by a check.
 std::string table_fault(std::span<const std::byte> file, std::span<const SectionEntry> table,
                         std::vector<Found>& sections) {
-  std::uint64_t end = sizeof(FileHeader) + table.size_bytes();
-  std::size_t next_info = 0;
-  for (std::size_t i = 0; i < table.size(); ++i) {
+  uint64_t end = sizeof(FileHeader) + table.size_bytes();
+  size_t next_info = 0;
+  for (size_t i = 0; i < table.size(); ++i) {
     const std::string place = "table[" + std::to_string(i) + "].";
-    while (next_info < section_infos.size() &&
-           static_cast<std::uint32_t>(section_infos[next_info].kind) != table[i].kind) {
+    while (next_info < section_infos.size() && static_cast<uint32_t>(section_infos[next_info].kind) != table[i].kind) {
       ++next_info;
     }
     if (next_info == section_infos.size()) {
       return place + "kind: unknown, or not above the one before" + in_parentheses(table[i].kind);
     }
     const Found& found = sections.emplace_back(Found{table[i], next_info++, place});
-    const std::uint64_t offset = align_up(end);
+    const uint64_t offset = align_up(end);
     if (std::string line = entry_fault(found.entry, section_infos[found.info], offset, file.size()); !line.empty()) {
       return in_section(found, line);
     }
@@ -259,12 +257,11 @@ std::string table_fault(std::span<const std::byte> file, std::span<const Section
   return {};
 }
 
-std::string checksum_fault(std::span<const std::byte> file, const std::vector<Found>& sections,
-                           std::size_t most_threads) {
+std::string checksum_fault(std::span<const std::byte> file, const std::vector<Found>& sections, size_t most_threads) {
   std::vector<std::string> faults(sections.size());
-  const auto check_one = [&](std::size_t i) {
+  const auto check_one = [&](size_t i) {
     const SectionEntry& entry = sections[i].entry;
-    const std::uint64_t checksum = XXH3_64bits(file.data() + entry.offset_bytes, entry.size_bytes);
+    const uint64_t checksum = XXH3_64bits(file.data() + entry.offset_bytes, entry.size_bytes);
     if (entry.checksum != checksum) faults[i] = in_section(sections[i], wrong("checksum", entry.checksum, checksum));
   };
   for_each_section(file.size(), sections.size(), most_threads, check_one);
@@ -273,9 +270,9 @@ std::string checksum_fault(std::span<const std::byte> file, const std::vector<Fo
 }
 
 /// Points `view` at the sections' records: in the file, or in `decoded`, which it makes.
-std::string place_records(std::span<const std::byte> file, const std::vector<Found>& sections, std::size_t most_threads,
+std::string place_records(std::span<const std::byte> file, const std::vector<Found>& sections, size_t most_threads,
                           Mapping& decoded, View& view) {
-  std::uint64_t bytes = 0;
+  uint64_t bytes = 0;
   for (const Found& found : sections) {
     if (found.entry.codec != Codec::raw) bytes += align_up(found.entry.count * found.entry.stride_bytes);
   }
@@ -292,7 +289,7 @@ std::string place_records(std::span<const std::byte> file, const std::vector<Fou
     const std::span<const std::byte> stored = file.subspan(entry.offset_bytes, entry.size_bytes);
     const std::byte* records = stored.data();
     if (entry.codec != Codec::raw) {
-      const std::uint64_t size = entry.count * entry.stride_bytes;
+      const uint64_t size = entry.count * entry.stride_bytes;
       coded.push_back({entry.codec, entry.stride_bytes, stored, room.first(size)});
       coded_found.push_back(&found);
       records = room.data();
@@ -301,7 +298,7 @@ std::string place_records(std::span<const std::byte> file, const std::vector<Fou
     set_section(view, found.info, records, entry.count);
   }
   const std::vector<std::string> faults = decode_all(coded, most_threads);
-  for (std::size_t i = 0; i < coded.size(); ++i) {
+  for (size_t i = 0; i < coded.size(); ++i) {
     if (faults[i].empty()) continue;
     return in_section(*coded_found[i], "codec: " + std::string(name_of(coded[i].codec)) + ": " + faults[i]);
   }
@@ -311,19 +308,18 @@ std::string place_records(std::span<const std::byte> file, const std::vector<Fou
 }  // namespace
 
 void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression,
-           std::size_t most_threads) {
+           size_t most_threads) {
   TemporaryFile file(path);
   write_all(file, view, compression, most_threads);
   file.commit(sync);
 }
 
-void write(const std::filesystem::path& path, const Contents& contents, Compression compression,
-           std::size_t most_threads) {
+void write(const std::filesystem::path& path, const Contents& contents, Compression compression, size_t most_threads) {
   write(path, view_of(contents), Sync::yes, compression, most_threads);
 }
 
 Writer::Writer(const std::filesystem::path& path, const Contents& contents, Compression compression,
-               std::size_t most_threads)
+               size_t most_threads)
     : file_(path), size_bytes_(write_all(file_, view_of(contents), compression, most_threads)) {
   try {
     syncing_ = std::async(std::launch::async, [this] { file_.sync(); });
@@ -345,7 +341,7 @@ Mapping::~Mapping() {
   if (data_) munmap(data_, size_);
 }
 
-File::File(const std::filesystem::path& path, std::size_t most_threads, Hold hold) : file_(map_file(path, hold)) {
+File::File(const std::filesystem::path& path, size_t most_threads, Hold hold) : file_(map_file(path, hold)) {
   const std::span<const std::byte> bytes = file_.bytes();
   const FileHeader& header = *reinterpret_cast<const FileHeader*>(bytes.data());
   if (std::memcmp(header.magic.data(), magic.data(), magic.size()) != 0) fail(path, no_pack(path, bytes));

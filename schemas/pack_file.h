@@ -2,6 +2,7 @@
 // Writes a pack atomically; opens one by mapping it and checking everything before anything is used.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <future>
 #include <span>
@@ -28,18 +29,17 @@ enum class Compression { off, smallest };
 /// beforehand whether the pack will open. Big packs are written in at most `most_threads` threads; 0: as many as there
 /// are cores. Throws Error.
 void write(const std::filesystem::path& path, const Contents& contents, Compression compression = Compression::off,
-           std::size_t most_threads = 0);
+           size_t most_threads = 0);
 void write(const std::filesystem::path& path, const View& view, Sync sync, Compression compression = Compression::off,
-           std::size_t most_threads = 0);
+           size_t most_threads = 0);
 
 /// write() in two steps, between which the disk works on its own.
 class Writer {
  public:
   /// Writes the temporary file and begins to sync it. `contents` are not needed any more. Throws Error.
-  Writer(const std::filesystem::path& path, const Contents& contents, Compression compression,
-         std::size_t most_threads = 0);
+  Writer(const std::filesystem::path& path, const Contents& contents, Compression compression, size_t most_threads = 0);
   Writer(const Writer&) = delete;
-  std::uint64_t size_bytes() const { return size_bytes_; }
+  uint64_t size_bytes() const { return size_bytes_; }
   /// Waits for the disk. Throws Error.
   void sync();
   /// The same, and puts the file in its place; without it nothing is left behind. Throws Error.
@@ -47,7 +47,7 @@ class Writer {
 
  private:
   TemporaryFile file_;
-  std::uint64_t size_bytes_;
+  uint64_t size_bytes_;
   std::future<void> syncing_;  // waits before file_ goes
 };
 
@@ -55,7 +55,7 @@ class Writer {
 class Mapping {
  public:
   Mapping() = default;
-  Mapping(void* data, std::size_t size) : data_(data), size_(size) {}
+  Mapping(void* data, size_t size) : data_(data), size_(size) {}
   ~Mapping();
   Mapping(Mapping&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
@@ -68,7 +68,7 @@ class Mapping {
 
  private:
   void* data_ = nullptr;
-  std::size_t size_ = 0;
+  size_t size_ = 0;
 };
 
 /// A mapped file must not be written to while it is used. If another program shortens it, the system ends the reader by
@@ -81,7 +81,7 @@ enum class Hold { mapped, copied };
 class File {
  public:
   /// Checks and decodes big packs in at most `most_threads` threads; 0: as many as there are cores. Throws Error.
-  explicit File(const std::filesystem::path& path, std::size_t most_threads = 0, Hold hold = Hold::mapped);
+  explicit File(const std::filesystem::path& path, size_t most_threads = 0, Hold hold = Hold::mapped);
   File(File&& other) noexcept;
   File& operator=(File&& other) noexcept;
 
@@ -89,7 +89,7 @@ class File {
   const View& view() const { return view_; }
   /// The text of a string of this pack.
   std::string_view text(const StringRef& ref) const;
-  std::size_t size_bytes() const { return file_.bytes().size(); }
+  size_t size_bytes() const { return file_.bytes().size(); }
   /// How each section that is not empty is stored.
   std::span<const SectionEntry> table() const { return table_; }
 

@@ -14,22 +14,22 @@
 namespace chandelier::pack {
 namespace {
 
-constexpr std::size_t alignment = 16;  // of first_byte
+constexpr size_t alignment = 16;  // of first_byte
 
 std::span<const std::byte> stored_of(const View& view, const Image& image) {
   return view.image_data.subspan(image.first_byte, image.stored_bytes);
 }
 
-[[noreturn]] void fail(const View& view, std::size_t image, const std::string& what) {
+[[noreturn]] void fail(const View& view, size_t image, const std::string& what) {
   const StringRef& name = view.images[image].name;
   const auto* text = reinterpret_cast<const char*>(view.strings.data()) + name.offset_bytes;
   throw Error(at("images", image) + " (" + std::string(text, name.size_bytes) + ")" + what);
 }
 
 bool lie_one_after_another(const View& view) {
-  std::uint64_t end = 0;
+  uint64_t end = 0;
   for (const Image& image : view.images) {
-    const std::uint64_t size = view.image_data.size();
+    const uint64_t size = view.image_data.size();
     if (image.first_byte < end || image.first_byte > size || image.stored_bytes > size - image.first_byte) return false;
     end = image.first_byte + image.stored_bytes;
   }
@@ -39,21 +39,20 @@ bool lie_one_after_another(const View& view) {
 }  // namespace
 
 std::string half_float_fault(std::span<const std::byte> texels) {
-  for (std::size_t i = 0; i + 1 < texels.size(); i += 2) {
-    std::uint16_t bits = 0;
+  for (size_t i = 0; i + 1 < texels.size(); i += 2) {
+    uint16_t bits = 0;
     std::memcpy(&bits, &texels[i], sizeof(bits));
     if (is_half_texel(bits)) continue;
-    return ": half float " + text(std::uint64_t{i / 2}) + " is negative or not finite (" + text(std::uint64_t{bits}) +
-           ")";
+    return ": half float " + text(uint64_t{i / 2}) + " is negative or not finite (" + text(uint64_t{bits}) + ")";
   }
   return {};
 }
 
-std::vector<Texels> texels_of(const View& view, std::uint32_t first, std::uint32_t count, std::size_t most_threads) {
+std::vector<Texels> texels_of(const View& view, uint32_t first, uint32_t count, size_t most_threads) {
   std::vector<Texels> texels;
   std::vector<Coded> coded;
-  std::vector<std::uint32_t> number;  // of each of `coded`
-  for (std::uint32_t i = first; i < first + count; ++i) {
+  std::vector<uint32_t> number;  // of each of `coded`
+  for (uint32_t i = first; i < first + count; ++i) {
     const Image& image = view.images[i];
     if (image.codec == ImageCodec::raw) {
       texels.emplace_back(stored_of(view, image));
@@ -65,7 +64,7 @@ std::vector<Texels> texels_of(const View& view, std::uint32_t first, std::uint32
     texels.emplace_back(std::move(decoded), image.size_bytes);
   }
   const std::vector<std::string> faults = decode_all(coded, most_threads);
-  for (std::size_t i = 0; i < coded.size(); ++i) {
+  for (size_t i = 0; i < coded.size(); ++i) {
     const Image& image = view.images[number[i]];
     if (!faults[i].empty()) fail(view, number[i], ".codec: " + std::string(name_of(image.codec)) + ": " + faults[i]);
     if (image.format != ImageFormat::rgba16_sfloat) continue;
@@ -74,16 +73,15 @@ std::vector<Texels> texels_of(const View& view, std::uint32_t first, std::uint32
   return texels;
 }
 
-Texels texels_of(const View& view, std::uint32_t image) {
+Texels texels_of(const View& view, uint32_t image) {
   return std::move(texels_of(view, image, 1, 1).front());
 }
 
-void check_images(const View& view, std::size_t most_threads) {
-  parallel_for(view.images.size(), most_threads,
-               [&](std::size_t i) { texels_of(view, static_cast<std::uint32_t>(i)); });
+void check_images(const View& view, size_t most_threads) {
+  parallel_for(view.images.size(), most_threads, [&](size_t i) { texels_of(view, static_cast<uint32_t>(i)); });
 }
 
-EncodedImages encode_images(const View& view, std::size_t most_threads) {
+EncodedImages encode_images(const View& view, size_t most_threads) {
   EncodedImages out;
   if (!lie_one_after_another(view)) return out;
   std::vector<std::span<const std::byte>> raw;
@@ -91,7 +89,7 @@ EncodedImages encode_images(const View& view, std::size_t most_threads) {
     raw.push_back(image.codec == ImageCodec::raw ? stored_of(view, image) : std::span<const std::byte>());
   }
   const std::vector<Encoded> encoded = encode_images(raw, most_threads);
-  for (std::size_t i = 0; i < raw.size(); ++i) {
+  for (size_t i = 0; i < raw.size(); ++i) {
     Image& image = out.images.emplace_back(view.images[i]);
     std::span<const std::byte> stored = stored_of(view, image);
     if (encoded[i].codec == Codec::zstd) {

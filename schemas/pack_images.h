@@ -17,7 +17,7 @@ namespace chandelier::pack {
 class Texels {
  public:
   explicit Texels(std::span<const std::byte> borrowed) : bytes_(borrowed) {}
-  Texels(std::unique_ptr<std::byte[]> decoded, std::size_t size)
+  Texels(std::unique_ptr<std::byte[]> decoded, size_t size)
       : decoded_(std::move(decoded)), bytes_(decoded_.get(), size) {}
   std::span<const std::byte> bytes() const { return bytes_; }
 
@@ -29,12 +29,12 @@ class Texels {
 /// The texels of `count` images from `first` on, decoded in at most `most_threads` threads; 0: as many as there are
 /// cores. `view` has passed check(), which does not decode images. Throws Error where what is stored is malformed, or
 /// holds half floats that an image may not hold: `images[3] (sky.exr): …`.
-std::vector<Texels> texels_of(const View& view, std::uint32_t first, std::uint32_t count, std::size_t most_threads = 0);
+std::vector<Texels> texels_of(const View& view, uint32_t first, uint32_t count, size_t most_threads = 0);
 /// Of one image.
-Texels texels_of(const View& view, std::uint32_t image);
+Texels texels_of(const View& view, uint32_t image);
 
 /// Decodes each image, and keeps none. Throws Error.
-void check_images(const View& view, std::size_t most_threads = 0);
+void check_images(const View& view, size_t most_threads = 0);
 
 /// ": half float 3 is negative or not finite (31744)", or an empty string.
 std::string half_float_fault(std::span<const std::byte> texels);
@@ -49,6 +49,6 @@ struct EncodedImages {
 /// image are left out. The same view gives the same bytes, whatever the number of threads. Its records need not have
 /// passed any check: of images that do not lie in image_data one after the other nothing is encoded, and the result is
 /// empty.
-EncodedImages encode_images(const View& view, std::size_t most_threads = 0);
+EncodedImages encode_images(const View& view, size_t most_threads = 0);
 
 }  // namespace chandelier::pack

@@ -16,15 +16,15 @@ bool has_triangle_codec() {
   return false;
 }
 
-std::vector<std::byte> to_triangle_code(std::span<const std::uint32_t>, std::uint32_t) {
+std::vector<std::byte> to_triangle_code(std::span<const uint32_t>, uint32_t) {
   return {};
 }
 
-bool from_triangle_code(std::span<const std::byte>, std::span<std::uint32_t>) {
+bool from_triangle_code(std::span<const std::byte>, std::span<uint32_t>) {
   return false;
 }
 
-std::size_t triangle_code_bound(std::size_t) {
+size_t triangle_code_bound(size_t) {
   return 0;
 }
 
@@ -33,15 +33,15 @@ std::size_t triangle_code_bound(std::size_t) {
 namespace {
 
 // Of any vertex number: the library takes it for the longest number that its code may need.
-constexpr std::size_t vertices = 0xFFFFFFFF;
+constexpr size_t vertices = 0xFFFFFFFF;
 
 /// Calls `visit(triangle, turn)` with the turn that the code gives each triangle: corner k of the input is corner
 /// (k + turn) % 3 of `coded`. A triangle with equal corners may fit more than one; the first is taken.
 template <typename Visit>
-void for_each_turn(std::span<const std::uint32_t> corners, std::span<const std::uint32_t> coded, Visit visit) {
-  for (std::size_t t = 0; t < corners.size() / 3; ++t) {
-    const std::uint32_t *from = &corners[3 * t], *to = &coded[3 * t];
-    std::uint8_t turn = 0;
+void for_each_turn(std::span<const uint32_t> corners, std::span<const uint32_t> coded, Visit visit) {
+  for (size_t t = 0; t < corners.size() / 3; ++t) {
+    const uint32_t *from = &corners[3 * t], *to = &coded[3 * t];
+    uint8_t turn = 0;
     while (turn < 2 && (from[0] != to[turn] || from[1] != to[(turn + 1) % 3] || from[2] != to[(turn + 2) % 3])) ++turn;
     visit(t, turn);
   }
@@ -53,40 +53,40 @@ bool has_triangle_codec() {
   return true;
 }
 
-std::size_t triangle_code_bound(std::size_t corner_count) {
-  return sizeof(std::uint32_t) + corner_count / 3 + meshopt_encodeIndexBufferBound(corner_count, vertices);
+size_t triangle_code_bound(size_t corner_count) {
+  return sizeof(uint32_t) + corner_count / 3 + meshopt_encodeIndexBufferBound(corner_count, vertices);
 }
 
-std::vector<std::byte> to_triangle_code(std::span<const std::uint32_t> corners, std::uint32_t base) {
-  const std::size_t count = corners.size(), head = sizeof(base) + count / 3;
-  std::vector<std::uint32_t> moved(corners.begin(), corners.end());
-  for (std::uint32_t& corner : moved) corner -= base;
+std::vector<std::byte> to_triangle_code(std::span<const uint32_t> corners, uint32_t base) {
+  const size_t count = corners.size(), head = sizeof(base) + count / 3;
+  std::vector<uint32_t> moved(corners.begin(), corners.end());
+  for (uint32_t& corner : moved) corner -= base;
   std::vector<std::byte> coded(triangle_code_bound(count));
   std::memcpy(coded.data(), &base, sizeof(base));
   auto* code = reinterpret_cast<unsigned char*>(coded.data() + head);
-  const std::size_t code_bytes = meshopt_encodeIndexBuffer(code, coded.size() - head, moved.data(), count);
-  std::vector<std::uint32_t> turned(count);
+  const size_t code_bytes = meshopt_encodeIndexBuffer(code, coded.size() - head, moved.data(), count);
+  std::vector<uint32_t> turned(count);
   if (code_bytes == 0 || meshopt_decodeIndexBuffer(turned.data(), count, sizeof(base), code, code_bytes) != 0)
     return {};
-  for_each_turn(moved, turned, [&](std::size_t t, std::uint8_t turn) { coded[sizeof(base) + t] = std::byte{turn}; });
+  for_each_turn(moved, turned, [&](size_t t, uint8_t turn) { coded[sizeof(base) + t] = std::byte{turn}; });
   coded.resize(head + code_bytes);
   return coded;
 }
 
-bool from_triangle_code(std::span<const std::byte> coded, std::span<std::uint32_t> corners) {
-  std::uint32_t base = 0;
-  const std::size_t head = sizeof(base) + corners.size() / 3;
+bool from_triangle_code(std::span<const std::byte> coded, std::span<uint32_t> corners) {
+  uint32_t base = 0;
+  const size_t head = sizeof(base) + corners.size() / 3;
   if (coded.size() <= head) return false;
   std::memcpy(&base, coded.data(), sizeof(base));
   const auto* code = reinterpret_cast<const unsigned char*>(coded.data() + head);
   if (meshopt_decodeIndexBuffer(corners.data(), corners.size(), sizeof(base), code, coded.size() - head) != 0) {
     return false;
   }
-  for (std::size_t t = 0; t < corners.size() / 3; ++t) {
-    const auto turn = static_cast<std::uint32_t>(coded[sizeof(base) + t]);
+  for (size_t t = 0; t < corners.size() / 3; ++t) {
+    const auto turn = static_cast<uint32_t>(coded[sizeof(base) + t]);
     if (turn > 2) return false;
-    const std::uint32_t was[3] = {corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]};
-    for (std::uint32_t k = 0; k < 3; ++k) corners[3 * t + k] = was[(k + turn) % 3] + base;
+    const uint32_t was[3] = {corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]};
+    for (uint32_t k = 0; k < 3; ++k) corners[3 * t + k] = was[(k + turn) % 3] + base;
   }
   return true;
 }

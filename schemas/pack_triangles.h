@@ -14,12 +14,12 @@ bool has_triangle_codec();
 
 /// 32 bits to add to every corner, then for each triangle the number of corners by which it is turned, then the code.
 /// `corners` are three a triangle. `base` should be near them: one above the largest before them is best.
-std::vector<std::byte> to_triangle_code(std::span<const std::uint32_t> corners, std::uint32_t base);
+std::vector<std::byte> to_triangle_code(std::span<const uint32_t> corners, uint32_t base);
 
 /// The inverse. False if `coded` is malformed; any other content gives some corners.
-[[nodiscard]] bool from_triangle_code(std::span<const std::byte> coded, std::span<std::uint32_t> corners);
+[[nodiscard]] bool from_triangle_code(std::span<const std::byte> coded, std::span<uint32_t> corners);
 
 /// Most bytes that to_triangle_code() can return for so many corners.
-std::size_t triangle_code_bound(std::size_t corner_count);
+size_t triangle_code_bound(size_t corner_count);
 
 }  // namespace chandelier::pack

@@ -16,12 +16,12 @@ namespace chandelier::pack {
 /// Calls `body(i)` once for each i below `count`, in any order and at the same time, in at most `most_threads` threads
 /// with this one; 0: as many as there are cores. Throws what a call threw.
 template <typename Body>
-void parallel_for(std::size_t count, std::size_t most_threads, const Body& body) {
-  std::atomic<std::size_t> next = 0;
+void parallel_for(size_t count, size_t most_threads, const Body& body) {
+  std::atomic<size_t> next = 0;
   std::exception_ptr thrown;
   std::mutex mutex;
   const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
+    for (size_t i = next++; i < count; i = next++) {
       try {
         body(i);
       } catch (...) {
@@ -31,9 +31,9 @@ void parallel_for(std::size_t count, std::size_t most_threads, const Body& body)
     }
   };
   std::vector<std::jthread> threads;
-  const std::size_t wanted = std::min(count, most_threads ? most_threads : std::thread::hardware_concurrency());
+  const size_t wanted = std::min(count, most_threads ? most_threads : std::thread::hardware_concurrency());
   try {
-    for (std::size_t i = 1; i < wanted; ++i) threads.emplace_back(work);
+    for (size_t i = 1; i < wanted; ++i) threads.emplace_back(work);
   } catch (const std::system_error&) {  // no more threads available: the existing ones do all the work
   }
   work();

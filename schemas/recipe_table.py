@@ -4,7 +4,7 @@ import re
 
 from schema_page import CAMEL, DASHED, SNAKE, SchemaError, check_attributes, check_name, comment
 
-NUMBERS = {"f32": "float", "u32": "std::uint32_t", "u64": "std::uint64_t"}
+NUMBERS = {"f32": "float", "u32": "uint32_t", "u64": "uint64_t"}
 
 
 def shown(number):

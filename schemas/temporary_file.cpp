@@ -79,7 +79,7 @@ TemporaryFile::~TemporaryFile() {
   close(descriptor_);
 }
 
-void TemporaryFile::write(std::uint64_t offset, const void* data, std::size_t size) {
+void TemporaryFile::write(uint64_t offset, const void* data, size_t size) {
   const char* at = static_cast<const char*>(data);
   auto place = static_cast<off_t>(offset);
   while (size > 0) {
@@ -88,7 +88,7 @@ void TemporaryFile::write(std::uint64_t offset, const void* data, std::size_t si
     if (written < 0) fail_system(path_, "cannot write", errno);
     at += written;
     place += written;
-    size -= static_cast<std::size_t>(written);
+    size -= static_cast<size_t>(written);
   }
 }
 

@@ -21,7 +21,7 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   /// Any thread may call it. What no call fills up to the file's end is zero.
-  void write(std::uint64_t offset, const void* data, std::size_t size);
+  void write(uint64_t offset, const void* data, size_t size);
 
   /// Waits until all that was written is on the disk. Any thread may call it, after the last write().
   void sync();

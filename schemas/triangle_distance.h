@@ -25,7 +25,7 @@ inline double distance_to_triangle(const Triangle& t) {
   double least = INFINITY;
   bool inside = true;
   const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (size_t i = 0; i < 3; ++i) {
     const glm::dvec3 &a = t[i], &b = t[(i + 1) % 3];
     least = std::min(least, distance_to_segment(a, b));
     inside = inside && glm::dot(glm::cross(b - a, -a), normal) >= 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 
@@ -23,12 +24,12 @@ struct Threshold {
   float failing;  // the greatest that does not; -infinity: all pass
 };
 
-Threshold find_threshold(std::vector<float> alphas, std::size_t count) {
+Threshold find_threshold(std::vector<float> alphas, size_t count) {
   constexpr float infinite = std::numeric_limits<float>::infinity();
-  const auto nth = alphas.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(count, 1) - 1);
+  const auto nth = alphas.begin() + static_cast<ptrdiff_t>(std::max<size_t>(count, 1) - 1);
   std::nth_element(alphas.begin(), nth, alphas.end(), std::greater<>());
   const float value = *nth;
-  std::size_t above = 0, equal = 0;
+  size_t above = 0, equal = 0;
   float next_above = infinite, next_below = -infinite;
   for (const float alpha : alphas) {
     if (alpha > value) ++above, next_above = std::min(next_above, alpha);
@@ -42,25 +43,25 @@ Threshold find_threshold(std::vector<float> alphas, std::size_t count) {
 
 }  // namespace
 
-double alpha_coverage(const std::vector<std::uint8_t>& rgba, float cutoff) {
+double alpha_coverage(const std::vector<uint8_t>& rgba, float cutoff) {
   const int first = first_passing_code(cutoff);
-  std::size_t passing = 0;
-  for (std::size_t i = 3; i < rgba.size(); i += 4) passing += rgba[i] >= first;
+  size_t passing = 0;
+  for (size_t i = 3; i < rgba.size(); i += 4) passing += rgba[i] >= first;
   return static_cast<double>(passing) / static_cast<double>(rgba.size() / 4);
 }
 
-std::vector<std::uint8_t> with_coverage(const std::vector<float>& alphas, float cutoff, double coverage) {
+std::vector<uint8_t> with_coverage(const std::vector<float>& alphas, float cutoff, double coverage) {
   const int first = first_passing_code(cutoff);
-  const auto count = static_cast<std::size_t>(std::llround(coverage * static_cast<double>(alphas.size())));
+  const auto count = static_cast<size_t>(std::llround(coverage * static_cast<double>(alphas.size())));
   const Threshold threshold = find_threshold(alphas, count);
   float scale = 1;  // as little as will do
   if (threshold.passing > 0 && threshold.passing < cutoff) scale = cutoff / threshold.passing;
   if (threshold.failing >= cutoff) scale = cutoff / threshold.failing;
-  std::vector<std::uint8_t> out(alphas.size());
-  for (std::size_t i = 0; i < alphas.size(); ++i) {
+  std::vector<uint8_t> out(alphas.size());
+  for (size_t i = 0; i < alphas.size(); ++i) {
     const int code = static_cast<int>(std::clamp(alphas[i] * scale, 0.0f, 1.0f) * 255.0f + 0.5f);
     const bool passes = alphas[i] >= threshold.passing;  // and rounding shall not change that
-    out[i] = static_cast<std::uint8_t>(passes ? std::max(code, first) : std::min(code, first - 1));
+    out[i] = static_cast<uint8_t>(passes ? std::max(code, first) : std::min(code, first - 1));
   }
   return out;
 }

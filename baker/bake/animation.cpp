@@ -34,9 +34,9 @@ void add_node(const Node& node, Strings& strings, pack::Contents& pack) {
 }
 
 /// The first time of the channel; appends its times unless the channel before has the same ones.
-std::uint32_t add_times(const AnimationChannel& channel, const AnimationChannel* before, pack::Contents& pack) {
+uint32_t add_times(const AnimationChannel& channel, const AnimationChannel* before, pack::Contents& pack) {
   if (before && before->times_s == channel.times_s) return pack.animation_channels.back().first_key;
-  const std::uint32_t first = fit_u32(pack.animation_times.size(), "animation keys");
+  const uint32_t first = fit_u32(pack.animation_times.size(), "animation keys");
   for (const float time : channel.times_s) pack.animation_times.push_back({time});
   fit_u32(pack.animation_times.size(), "animation keys");
   return first;

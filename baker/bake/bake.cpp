@@ -34,7 +34,7 @@ void describe(const Scene& scene, const BakeSettings& settings, Strings& strings
   info.batch_triangles = settings.batch_triangles;
   info.range_threshold_lx = settings.range_threshold_lx;
   info.unique_triangles = pack.indices.size() / 3;
-  for (std::size_t i = 0; i < pack.batch_instances.size(); ++i) {
+  for (size_t i = 0; i < pack.batch_instances.size(); ++i) {
     const pack::BatchInstance& record = pack.batch_instances[i];
     info.bounds_min_ws = i ? glm::min(info.bounds_min_ws, record.bounds_min_ws) : record.bounds_min_ws;
     info.bounds_max_ws = i ? glm::max(info.bounds_max_ws, record.bounds_max_ws) : record.bounds_max_ws;
@@ -46,7 +46,7 @@ void describe(const Scene& scene, const BakeSettings& settings, Strings& strings
 }
 
 template <typename... Records>
-std::uint64_t bytes_of(const std::vector<Records>&... sections) {
+uint64_t bytes_of(const std::vector<Records>&... sections) {
   return (std::span(sections).size_bytes() + ...);
 }
 
@@ -79,7 +79,7 @@ void find_or_bake_geometry(Scene& scene, const BakeSettings& settings, const Pro
     found = load_geometry(cache, entry, report, strings, pack);
   });
   if (found) return;
-  const std::size_t first_pass = report.passes.size();
+  const size_t first_pass = report.passes.size();
   bake_geometry(scene, settings, progress, report, strings, pack);
   report.run("keep_geometry", [&](PassReport&) { store_geometry(cache, entry, report, first_pass, pack); });
 }

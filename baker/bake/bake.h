@@ -2,6 +2,8 @@
 // The bake: scene in, pack out.
 #pragma once
 
+#include <cstdint>
+
 #include "../cache.h"
 #include "../error.h"
 #include "../progress.h"
@@ -15,7 +17,7 @@
 namespace chandelier::baker {
 
 struct BakeSettings {
-  std::uint32_t batch_triangles = 100;                          // most in a batch; a multiple of 4, up to 512
+  uint32_t batch_triangles = 100;                               // most in a batch; a multiple of 4, up to 512
   float range_threshold_lx = pack::default_range_threshold_lx;  // where a light without a range of its own ends
   float position_error_m = 0.0005f;  // largest distance that a vertex may move in the world; 0 keeps floats
   int normal_bits = 10;              // of each of a normal's and a tangent's two numbers, 8 to 16

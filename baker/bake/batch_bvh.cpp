@@ -24,7 +24,7 @@ std::vector<BvhItem> instance_items(const pack::Contents& pack) {
     is_drawn[draw.instance] = true;
   }
   std::vector<BvhItem> items;
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  for (size_t i = 0; i < all.size(); ++i) {
     if (is_drawn[i]) items.push_back(all[i]);
   }
   return items;
@@ -50,10 +50,10 @@ void make_bvh(std::vector<BvhItem>& items, std::vector<pack::BvhNode>& nodes, st
 void make_batch_bvh(PassReport& pass, pack::Contents& pack) {
   std::vector<BvhItem> items;
   items.reserve(pack.batch_instances.size());
-  for (std::size_t i = 0; i < pack.batch_instances.size(); ++i) {
+  for (size_t i = 0; i < pack.batch_instances.size(); ++i) {
     const pack::BatchInstance& draw = pack.batch_instances[i];
     if (is_static(pack, draw)) {
-      items.push_back({draw.bounds_min_ws, static_cast<std::uint32_t>(i), draw.bounds_max_ws, 0});
+      items.push_back({draw.bounds_min_ws, static_cast<uint32_t>(i), draw.bounds_max_ws, 0});
     }
   }
   make_bvh(items, pack.batch_bvh, pack.batch_bvh_items, pass);

@@ -23,7 +23,7 @@ glm::dvec3 normal_of(const glm::vec3* corner) {
 
 NormalCone normal_cone(std::span<const glm::vec3> corners) {
   glm::dvec3 sum(0), low(INFINITY), high(-INFINITY);
-  for (std::size_t i = 0; i < corners.size(); i += 3) sum += normal_of(&corners[i]);
+  for (size_t i = 0; i < corners.size(); i += 3) sum += normal_of(&corners[i]);
   for (const glm::vec3& corner : corners)
     low = glm::min(low, glm::dvec3(corner)), high = glm::max(high, glm::dvec3(corner));
   const double length = glm::length(sum);
@@ -32,7 +32,7 @@ NormalCone normal_cone(std::span<const glm::vec3> corners) {
 
   const glm::dvec3 center = 0.5 * low + 0.5 * high;
   double least = 1, back = -INFINITY;  // cosine of θ; how far behind the centre the apex must be
-  for (std::size_t i = 0; i < corners.size(); i += 3) {
+  for (size_t i = 0; i < corners.size(); i += 3) {
     const glm::dvec3 normal = normal_of(&corners[i]);
     const double cosine = glm::dot(normal, glm::dvec3(axis));
     least = std::min(least, cosine);

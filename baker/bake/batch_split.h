@@ -10,14 +10,14 @@
 namespace chandelier::baker {
 
 /// The box of a triangle, with its number.
-BvhItem triangle_box(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, std::uint32_t triangle);
+BvhItem triangle_box(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, uint32_t triangle);
 
 struct BatchOrder {
-  std::vector<std::uint32_t> triangles;  // numbers of all triangles, batch after batch, neighbours near each other
-  std::vector<std::uint32_t> counts;     // of triangles, per batch
+  std::vector<uint32_t> triangles;  // numbers of all triangles, batch after batch, neighbours near each other
+  std::vector<uint32_t> counts;     // of triangles, per batch
 };
 
 /// Batches of at most `most` triangles. The same on any number of threads.
-BatchOrder split_into_batches(std::vector<BvhItem>&& boxes, std::size_t most);
+BatchOrder split_into_batches(std::vector<BvhItem>&& boxes, size_t most);
 
 }  // namespace chandelier::baker

@@ -14,11 +14,11 @@ namespace {
 
 /// The position of a primitive in the pack's sections.
 struct Place {
-  std::size_t vertex = 0, skin_vertex = 0;
+  size_t vertex = 0, skin_vertex = 0;
   bool skinned = false;  // the mesh is
   struct Copy {
     bool wanted = false;
-    std::size_t index = 0, batch = 0;
+    size_t index = 0, batch = 0;
   } copies[2];  // as modelled, mirrored
 };
 
@@ -41,18 +41,18 @@ bool is_skinned(const std::vector<CutPrimitive>& mesh) {
 
 pack::SkinVertex record_of(const SkinVertex& in) {
   pack::SkinVertex out;
-  for (std::size_t i = 0; i < 2; ++i) {
-    out.joints[i] = in.joints[2 * i] | std::uint32_t{in.joints[2 * i + 1]} << 16;
-    out.weights[i] = in.weights[2 * i] | std::uint32_t{in.weights[2 * i + 1]} << 16;
+  for (size_t i = 0; i < 2; ++i) {
+    out.joints[i] = in.joints[2 * i] | uint32_t{in.joints[2 * i + 1]} << 16;
+    out.weights[i] = in.weights[2 * i] | uint32_t{in.weights[2 * i + 1]} << 16;
   }
   return out;
 }
 
 void write_vertices(const CutPrimitive& cut, const Place& place, pack::Contents& pack) {
   constexpr SkinVertex unbound = {{}, {65535, 0, 0, 0}};
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cut.vertex_order.size(), 8192), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const std::uint32_t from = cut.vertex_order[i];
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, cut.vertex_order.size(), 8192), [&](const auto& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      const uint32_t from = cut.vertex_order[i];
       pack.positions[place.vertex + i] = {cut.vertices[from].position_ls};
       pack.vertex_attributes[place.vertex + i] = cut.vertices[from].attributes;
       if (!place.skinned) continue;
@@ -78,20 +78,20 @@ void measure(std::span<const glm::vec3> corners, bool skinned, pack::Batch& batc
 /// Writes a primitive's batches and their corners.
 void write_batches(const CutPrimitive& cut, const Place& place, bool mirrored, pack::Contents& pack) {
   const Place::Copy& copy = place.copies[mirrored];
-  std::vector<std::size_t> first(cut.batch_counts.size() + 1, 0);
-  for (std::size_t b = 0; b < cut.batch_counts.size(); ++b) first[b + 1] = first[b] + 3 * cut.batch_counts[b];
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cut.batch_counts.size(), 64), [&](const auto& range) {
+  std::vector<size_t> first(cut.batch_counts.size() + 1, 0);
+  for (size_t b = 0; b < cut.batch_counts.size(); ++b) first[b + 1] = first[b] + 3 * cut.batch_counts[b];
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, cut.batch_counts.size(), 64), [&](const auto& range) {
     std::vector<glm::vec3> corners;
-    for (std::size_t b = range.begin(); b < range.end(); ++b) {
+    for (size_t b = range.begin(); b < range.end(); ++b) {
       pack::Batch& batch = pack.batches[copy.batch + b];
       batch.material = cut.material;
       batch.closed = b < cut.closed_batches;
-      batch.first_index = static_cast<std::uint32_t>(copy.index + first[b]);
+      batch.first_index = static_cast<uint32_t>(copy.index + first[b]);
       batch.index_count = 3 * cut.batch_counts[b];
       corners.clear();
-      for (std::size_t i = first[b]; i < first[b + 1]; ++i) {
-        const std::size_t from = !mirrored || i % 3 == 0 ? i : i % 3 == 1 ? i + 1 : i - 1;
-        pack.indices[copy.index + i] = {static_cast<std::uint32_t>(place.vertex + cut.indices[from])};
+      for (size_t i = first[b]; i < first[b + 1]; ++i) {
+        const size_t from = !mirrored || i % 3 == 0 ? i : i % 3 == 1 ? i + 1 : i - 1;
+        pack.indices[copy.index + i] = {static_cast<uint32_t>(place.vertex + cut.indices[from])};
         corners.push_back(cut.vertices[cut.vertex_order[cut.indices[from]]].position_ls);
       }
       measure(corners, place.skinned, batch);
@@ -109,8 +109,8 @@ void include(const pack::Batch& batch, pack::Mesh& mesh) {
 std::vector<std::vector<Place>> find_places(const std::vector<std::vector<CutPrimitive>>& meshes,
                                             const std::vector<MeshUse>& uses, pack::Contents& pack) {
   std::vector<std::vector<Place>> places(meshes.size());
-  std::size_t vertices = 0, skin_vertices = 0, indices = 0, batches = 0;
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
+  size_t vertices = 0, skin_vertices = 0, indices = 0, batches = 0;
+  for (size_t m = 0; m < meshes.size(); ++m) {
     const bool skinned = is_skinned(meshes[m]);
     for (const CutPrimitive& cut : meshes[m]) {
       places[m].push_back({.vertex = vertices, .skin_vertex = skin_vertices, .skinned = skinned, .copies = {}});
@@ -118,7 +118,7 @@ std::vector<std::vector<Place>> find_places(const std::vector<std::vector<CutPri
       if (skinned) skin_vertices += cut.vertex_order.size();
     }
     for (const int copy : {0, 1}) {
-      for (std::size_t p = 0; p < meshes[m].size() && uses[m].copies[copy]; ++p) {
+      for (size_t p = 0; p < meshes[m].size() && uses[m].copies[copy]; ++p) {
         places[m][p].copies[copy] = {true, indices, batches};
         indices += meshes[m][p].indices.size();
         batches += meshes[m][p].batch_counts.size();
@@ -138,12 +138,12 @@ pack::Mesh mesh_record(const std::vector<CutPrimitive>& cuts, const std::vector<
                        const pack::Contents& pack) {
   pack::Mesh record;
   if (cuts.empty() || !places[0].copies[copy].wanted) return record;
-  record.first_vertex = static_cast<std::uint32_t>(places[0].vertex);
-  record.first_skin_vertex = static_cast<std::uint32_t>(places[0].skin_vertex);
-  record.first_batch = static_cast<std::uint32_t>(places[0].copies[copy].batch);
-  for (std::size_t p = 0; p < cuts.size(); ++p) {
-    record.vertex_count += static_cast<std::uint32_t>(cuts[p].vertex_order.size());
-    for (std::size_t b = 0; b < cuts[p].batch_counts.size(); ++b) {
+  record.first_vertex = static_cast<uint32_t>(places[0].vertex);
+  record.first_skin_vertex = static_cast<uint32_t>(places[0].skin_vertex);
+  record.first_batch = static_cast<uint32_t>(places[0].copies[copy].batch);
+  for (size_t p = 0; p < cuts.size(); ++p) {
+    record.vertex_count += static_cast<uint32_t>(cuts[p].vertex_order.size());
+    for (size_t b = 0; b < cuts[p].batch_counts.size(); ++b) {
       include(pack.batches[places[p].copies[copy].batch + b], record);
     }
   }
@@ -157,21 +157,21 @@ bool is_mirrored(const MeshInstance& instance) {
   return glm::determinant(glm::dmat3(instance.world_from_local)) < 0;
 }
 
-std::vector<MeshRecords> make_batches(const Scene& scene, std::vector<PackedMesh>& meshes,
-                                      std::uint32_t batch_triangles, pack::Contents& pack) {
+std::vector<MeshRecords> make_batches(const Scene& scene, std::vector<PackedMesh>& meshes, uint32_t batch_triangles,
+                                      pack::Contents& pack) {
   std::vector<std::vector<CutPrimitive>> cuts(meshes.size());
-  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
+  tbb::parallel_for(size_t{0}, meshes.size(), [&](size_t m) {
     std::vector<PackedPrimitive>& primitives = meshes[m].primitives;
     cuts[m].resize(primitives.size());
-    tbb::parallel_for(std::size_t{0}, primitives.size(),
-                      [&](std::size_t p) { cuts[m][p] = cut_into_batches(std::move(primitives[p]), batch_triangles); });
+    tbb::parallel_for(size_t{0}, primitives.size(),
+                      [&](size_t p) { cuts[m][p] = cut_into_batches(std::move(primitives[p]), batch_triangles); });
   });
   meshes.clear();
   const std::vector<std::vector<Place>> places = find_places(cuts, mesh_uses(scene), pack);
 
   std::vector<std::array<pack::Mesh, 2>> records(cuts.size());
-  tbb::parallel_for(std::size_t{0}, cuts.size(), [&](std::size_t m) {
-    tbb::parallel_for(std::size_t{0}, cuts[m].size(), [&](std::size_t p) {
+  tbb::parallel_for(size_t{0}, cuts.size(), [&](size_t m) {
+    tbb::parallel_for(size_t{0}, cuts[m].size(), [&](size_t p) {
       write_vertices(cuts[m][p], places[m][p], pack);
       for (const bool mirrored : {false, true}) {
         if (places[m][p].copies[mirrored].wanted) write_batches(cuts[m][p], places[m][p], mirrored, pack);
@@ -182,10 +182,10 @@ std::vector<MeshRecords> make_batches(const Scene& scene, std::vector<PackedMesh
   });
 
   std::vector<MeshRecords> out(records.size());
-  for (std::size_t m = 0; m < records.size(); ++m) {
+  for (size_t m = 0; m < records.size(); ++m) {
     for (const int copy : {0, 1}) {
       if (records[m][copy].batch_count == 0) continue;
-      (copy ? out[m].mirrored : out[m].plain) = static_cast<std::uint32_t>(pack.meshes.size());
+      (copy ? out[m].mirrored : out[m].plain) = static_cast<uint32_t>(pack.meshes.size());
       pack.meshes.push_back(records[m][copy]);
     }
   }

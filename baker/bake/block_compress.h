@@ -2,6 +2,8 @@
 // RGBA8 into blocks of 4×4 texels that GPUs sample as they are.
 #pragma once
 
+#include <cstdint>
+
 #include "mips.h"
 
 namespace chandelier::baker {
@@ -13,9 +15,9 @@ enum class BlockFormat {
 };
 
 struct Blocks {
-  std::vector<std::uint8_t> bytes;  // rows of blocks from the top
-  std::uint64_t squared_error = 0;  // of all 8-bit values that the format keeps
-  std::uint64_t values = 0;         // their number; colours that alpha 0 hides do not count
+  std::vector<uint8_t> bytes;  // rows of blocks from the top
+  uint64_t squared_error = 0;  // of all 8-bit values that the format keeps
+  uint64_t values = 0;         // their number; colours that alpha 0 hides do not count
 };
 
 /// ⌈size / 4⌉ blocks a side; one that hangs over the edge is fitted to the texels inside. Same blocks on any number of

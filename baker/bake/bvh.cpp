@@ -23,29 +23,29 @@ namespace {
 
 using namespace sah;
 
-constexpr float traversal_cost = 1;            // of a node, where an item costs 1
-constexpr std::size_t most_tried = 5;          // up to here, every way to share the items out is tried
-constexpr std::size_t block_nodes = 16384;     // that one thread writes
-constexpr std::size_t parallel_items = 16384;  // from here on, a node's two sides are built by two threads
-constexpr std::size_t samples = 2048;          // of a node with twice as many items or more, to choose its cut from
-constexpr std::size_t treelet_items = 32;      // most of a treelet
-constexpr int sah_depth = 64;  // below, nodes are cut into halves, so that no input makes a tree of a path
+constexpr float traversal_cost = 1;       // of a node, where an item costs 1
+constexpr size_t most_tried = 5;          // up to here, every way to share the items out is tried
+constexpr size_t block_nodes = 16384;     // that one thread writes
+constexpr size_t parallel_items = 16384;  // from here on, a node's two sides are built by two threads
+constexpr size_t samples = 2048;          // of a node with twice as many items or more, to choose its cut from
+constexpr size_t treelet_items = 32;      // most of a treelet
+constexpr int sah_depth = 64;             // below, nodes are cut into halves, so that no input makes a tree of a path
 
 struct Cut {
   int axis = -1;          // none
-  std::size_t bin = 0;    // the first of the second child
+  size_t bin = 0;         // the first of the second child
   float cost = infinite;  // area times items, of both children
 };
 
-void find_cut(const AxisBins& bins, std::size_t count, int axis, Cut& best) {
+void find_cut(const AxisBins& bins, size_t count, int axis, Cut& best) {
   std::array<float, most_bins> right_costs;
   Bin right = Bin::empty();
-  for (std::size_t i = count - 1; i > 0; --i) {
+  for (size_t i = count - 1; i > 0; --i) {
     right.add(bins[i]);
     right_costs[i] = right.items == 0 ? infinite : right.cost();
   }
   Bin left = Bin::empty();
-  for (std::size_t i = 1; i < count; ++i) {
+  for (size_t i = 1; i < count; ++i) {
     left.add(bins[i - 1]);
     if (left.items == 0) continue;
     const float cost = left.cost() + right_costs[i];
@@ -53,25 +53,25 @@ void find_cut(const AxisBins& bins, std::size_t count, int axis, Cut& best) {
   }
 }
 
-Cut find_cut(std::span<const BvhItem> items, const Binning& binning, std::size_t stride) {
+Cut find_cut(std::span<const BvhItem> items, const Binning& binning, size_t stride) {
   Cut best;
   if (!binning.can_cut(0) && !binning.can_cut(1) && !binning.can_cut(2)) return best;
   const std::array<AxisBins, 3> axes = fill_bins(items, binning, stride);
   for (int axis = 0; axis < 3; ++axis) {
-    if (binning.can_cut(axis)) find_cut(axes[static_cast<std::size_t>(axis)], binning.bins, axis, best);
+    if (binning.can_cut(axis)) find_cut(axes[static_cast<size_t>(axis)], binning.bins, axis, best);
   }
   return best;
 }
 
 /// How many items, brought to the front, the first child gets; 0 for a leaf of up to `most_leaf` items.
-std::size_t cut(std::span<BvhItem> items, std::size_t most_leaf, const Box& centres, int depth, Box& left, Box& right) {
+size_t cut(std::span<BvhItem> items, size_t most_leaf, const Box& centres, int depth, Box& left, Box& right) {
   const Binning binning(centres, std::min(most_bins, 4 + items.size() / 16));
   Cut best;
   if (depth < sah_depth) {
-    best = find_cut(items, binning, std::max<std::size_t>(1, items.size() / samples));
+    best = find_cut(items, binning, std::max<size_t>(1, items.size() / samples));
     if (best.axis < 0 && items.size() >= 2 * samples) best = find_cut(items, binning, 1);
   }
-  const std::size_t count = best.axis < 0 ? 0 : partition(items, binning, best.axis, best.bin, left, right);
+  const size_t count = best.axis < 0 ? 0 : partition(items, binning, best.axis, best.bin, left, right);
   if (count > 0 && count < items.size()) return count;
   // No plane separates the centres, or areas overflow a float.
   if (items.size() <= most_leaf) return 0;
@@ -80,13 +80,13 @@ std::size_t cut(std::span<BvhItem> items, std::size_t most_leaf, const Box& cent
 }
 
 /// The best of all ways to give up to most_tried items to two children, or to one leaf.
-void add_few(std::span<BvhItem> items, std::size_t most_leaf, BvhShape& shape) {
+void add_few(std::span<BvhItem> items, size_t most_leaf, BvhShape& shape) {
   const unsigned all = (1u << items.size()) - 1;
   std::array<Bin, 1u << most_tried> sets;  // by the bits of their items
   sets[0] = Bin::empty();
   for (unsigned set = 1; set <= all; ++set) {
     sets[set] = sets[set & (set - 1)];
-    sets[set].add(box_of(items[static_cast<std::size_t>(std::countr_zero(set))]), 1);
+    sets[set].add(box_of(items[static_cast<size_t>(std::countr_zero(set))]), 1);
   }
   const float area = Box{sets[all].low, sets[all].high}.half_area();
   const bool can_be_leaf = items.size() <= most_leaf;
@@ -99,21 +99,21 @@ void add_few(std::span<BvhItem> items, std::size_t most_leaf, BvhShape& shape) {
       best = set;
     }
   }
-  shape.push_back(static_cast<std::uint8_t>(best == 0 ? items.size() : 0));
+  shape.push_back(static_cast<uint8_t>(best == 0 ? items.size() : 0));
   if (best == 0) return;
   std::array<BvhItem, most_tried> sorted;
-  std::size_t left = 0, right = static_cast<std::size_t>(std::popcount(best));
-  for (std::size_t i = 0; i < items.size(); ++i) sorted[best >> i & 1 ? left++ : right++] = items[i];
+  size_t left = 0, right = static_cast<size_t>(std::popcount(best));
+  for (size_t i = 0; i < items.size(); ++i) sorted[best >> i & 1 ? left++ : right++] = items[i];
   std::copy_n(sorted.begin(), items.size(), items.begin());
   add_few(items.first(left), most_leaf, shape);
   add_few(items.subspan(left), most_leaf, shape);
 }
 
-void add(std::span<BvhItem> items, std::size_t most_leaf, const Box& centres, int depth, BvhShape& shape) {
+void add(std::span<BvhItem> items, size_t most_leaf, const Box& centres, int depth, BvhShape& shape) {
   if (items.size() <= most_tried) return add_few(items, most_leaf, shape);
   Box left_centres, right_centres;
-  const std::size_t left = cut(items, most_leaf, centres, depth, left_centres, right_centres);
-  shape.push_back(static_cast<std::uint8_t>(left == 0 ? items.size() : 0));
+  const size_t left = cut(items, most_leaf, centres, depth, left_centres, right_centres);
+  shape.push_back(static_cast<uint8_t>(left == 0 ? items.size() : 0));
   if (left == 0) return;
   if (items.size() < parallel_items) {
     add(items.first(left), most_leaf, left_centres, depth + 1, shape);
@@ -129,12 +129,12 @@ void add(std::span<BvhItem> items, std::size_t most_leaf, const Box& centres, in
 }
 
 /// `first_item` is the number of items[0].
-void add_treelets(std::span<BvhItem> items, std::uint32_t first_item, const Box& centres, int depth, Treelets& out) {
+void add_treelets(std::span<BvhItem> items, uint32_t first_item, const Box& centres, int depth, Treelets& out) {
   if (items.size() > treelet_items) {
     Box left_centres, right_centres;
-    const std::size_t left = cut(items, most_leaf_items, centres, depth, left_centres, right_centres);
+    const size_t left = cut(items, most_leaf_items, centres, depth, left_centres, right_centres);
     add_treelets(items.first(left), first_item, left_centres, depth + 1, out);
-    add_treelets(items.subspan(left), first_item + static_cast<std::uint32_t>(left), right_centres, depth + 1, out);
+    add_treelets(items.subspan(left), first_item + static_cast<uint32_t>(left), right_centres, depth + 1, out);
     return;
   }
   BvhItem box = {items[0].low, first_item, items[0].high, 0};
@@ -143,28 +143,28 @@ void add_treelets(std::span<BvhItem> items, std::uint32_t first_item, const Box&
     box.high = glm::max(box.high, item.high);
   }
   out.boxes.push_back(box);
-  out.item_counts.push_back(static_cast<std::uint32_t>(items.size()));
-  const std::size_t nodes = out.shape.size();
+  out.item_counts.push_back(static_cast<uint32_t>(items.size()));
+  const size_t nodes = out.shape.size();
   add(items, most_leaf_items, centres, depth, out.shape);
-  out.node_counts.push_back(static_cast<std::uint32_t>(out.shape.size() - nodes));
+  out.node_counts.push_back(static_cast<uint32_t>(out.shape.size() - nodes));
 }
 
 /// Where a treelet comes from, and where it goes.
 struct TreeletMove {
-  std::uint32_t from_item, items;
-  const std::uint8_t* from_shape;
-  std::uint32_t nodes, to_item = 0, to_node = 0;
+  uint32_t from_item, items;
+  const uint8_t* from_shape;
+  uint32_t nodes, to_item = 0, to_node = 0;
 };
 
 std::vector<TreeletMove> list(std::span<const Treelets> parts, std::vector<BvhItem>& boxes) {
   std::vector<TreeletMove> moves;
   for (const Treelets& part : parts) {
-    const std::uint8_t* shape = part.shape.data();
-    for (std::size_t i = 0; i < part.boxes.size(); ++i) {
+    const uint8_t* shape = part.shape.data();
+    for (size_t i = 0; i < part.boxes.size(); ++i) {
       moves.push_back({part.boxes[i].number, part.item_counts[i], shape, part.node_counts[i]});
       shape += part.node_counts[i];
       boxes.push_back(part.boxes[i]);
-      boxes.back().number = static_cast<std::uint32_t>(moves.size() - 1);
+      boxes.back().number = static_cast<uint32_t>(moves.size() - 1);
     }
   }
   return moves;
@@ -173,14 +173,14 @@ std::vector<TreeletMove> list(std::span<const Treelets> parts, std::vector<BvhIt
 /// Writes the nodes of one tree: in blocks at once, backwards in each, so that children come before their parents.
 struct Filler {
   std::span<const BvhItem> items;
-  std::span<const std::uint32_t> order;  // of items in the leaves; none where they are in order
+  std::span<const uint32_t> order;  // of items in the leaves; none where they are in order
   const BvhShape& shape;
   BvhPlace place;
   std::span<pack::BvhNode> nodes;
   std::span<pack::NodeArea> areas;
 
   /// `item`: the leaf's first, counted in the tree.
-  void fill_leaf(std::uint32_t number, std::uint32_t item, std::uint32_t count) const {
+  void fill_leaf(uint32_t number, uint32_t item, uint32_t count) const {
     // A treelet's items, and so a leaf's, are side by side in either order.
     const std::span<const BvhItem> own = items.subspan(order.empty() ? item : order[item], count);
     pack::BvhNode node = {own[0].low, number + 1, own[0].high, (place.first_item + item) * 16 + count};
@@ -195,7 +195,7 @@ struct Filler {
   }
 
   /// False, and nothing done, where a child is not below `end` or not there yet: every node's skip is above 0.
-  bool fill_inner(std::uint32_t number, std::uint32_t end) const {
+  bool fill_inner(uint32_t number, uint32_t end) const {
     if (number + 1 >= end) return false;
     const pack::BvhNode& left = nodes[number + 1];
     if (left.skip == 0 || left.skip >= end) return false;
@@ -208,10 +208,10 @@ struct Filler {
   }
 
   /// Nodes first to end of the tree, whose items end with `item`; returns those whose children are not all among them.
-  std::vector<std::uint32_t> fill_block(std::size_t first, std::size_t end, std::uint32_t item) const {
-    std::vector<std::uint32_t> left_open;
-    const auto number_of = [&](std::size_t i) { return place.first_node + static_cast<std::uint32_t>(i); };
-    for (std::size_t i = end; i-- > first;) {
+  std::vector<uint32_t> fill_block(size_t first, size_t end, uint32_t item) const {
+    std::vector<uint32_t> left_open;
+    const auto number_of = [&](size_t i) { return place.first_node + static_cast<uint32_t>(i); };
+    for (size_t i = end; i-- > first;) {
       if (shape[i] != 0) {
         item -= shape[i];
         fill_leaf(number_of(i), item, shape[i]);
@@ -229,8 +229,8 @@ struct Filler {
 /// To 10 bits behind the first, which compresses well: areas are estimates for points, and each is off by 2^-11 at
 /// most.
 float rounded(float area_m2) {
-  constexpr std::uint32_t dropped = (1u << 13) - 1;
-  const auto bits = std::bit_cast<std::uint32_t>(area_m2) + dropped / 2 + 1;
+  constexpr uint32_t dropped = (1u << 13) - 1;
+  const auto bits = std::bit_cast<uint32_t>(area_m2) + dropped / 2 + 1;
   return std::min(std::bit_cast<float>(bits & ~dropped), std::numeric_limits<float>::max());
 }
 
@@ -241,27 +241,27 @@ double half_area(const pack::BvhNode& node) {
 
 }  // namespace
 
-BvhShape shape_bvh(std::span<BvhItem> items, std::size_t most_leaf) {
+BvhShape shape_bvh(std::span<BvhItem> items, size_t most_leaf) {
   BvhShape shape;
   if (!items.empty()) add(items, most_leaf, centres_of(items), 0, shape);
   return shape;
 }
 
-void shape_treelets(std::span<BvhItem> items, std::uint32_t first_item, Treelets& out) {
+void shape_treelets(std::span<BvhItem> items, uint32_t first_item, Treelets& out) {
   if (!items.empty()) add_treelets(items, first_item, centres_of(items), 0, out);
 }
 
-BvhShape join_treelets(std::span<const Treelets> parts, std::vector<std::uint32_t>& order) {
+BvhShape join_treelets(std::span<const Treelets> parts, std::vector<uint32_t>& order) {
   std::vector<BvhItem> boxes;
   std::vector<TreeletMove> moves = list(parts, boxes);
   const BvhShape top = shape_bvh(boxes, 1);
   BvhShape shape;
-  std::uint32_t node = 0, item = 0, leaf = 0;
+  uint32_t node = 0, item = 0, leaf = 0;
   for (const TreeletMove& move : moves) node += move.nodes, item += move.items;
   shape.resize(node + top.size() - moves.size());
   order.resize(item);
   node = item = 0;
-  for (const std::uint8_t of_top : top) {
+  for (const uint8_t of_top : top) {
     if (of_top == 0) {
       ++node;  // an inner node: zero is there
       continue;
@@ -272,8 +272,8 @@ BvhShape join_treelets(std::span<const Treelets> parts, std::vector<std::uint32_
     node += move.nodes;
     item += move.items;
   }
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, moves.size(), 1024), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, moves.size(), 1024), [&](const auto& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
       const TreeletMove& move = moves[i];
       std::copy_n(move.from_shape, move.nodes, shape.begin() + move.to_node);
       std::iota(order.begin() + move.to_item, order.begin() + move.to_item + move.items, move.from_item);
@@ -282,41 +282,40 @@ BvhShape join_treelets(std::span<const Treelets> parts, std::vector<std::uint32_
   return shape;
 }
 
-void fill_bvh(std::span<const BvhItem> items, std::span<const std::uint32_t> order, const BvhShape& shape,
+void fill_bvh(std::span<const BvhItem> items, std::span<const uint32_t> order, const BvhShape& shape,
               const BvhPlace& place, std::span<pack::BvhNode> nodes, std::span<pack::NodeArea> areas) {
   const Filler filler{items, order, shape, place, nodes, areas};
-  const std::size_t blocks = (shape.size() + block_nodes - 1) / block_nodes;
-  const auto block_end = [&](std::size_t block) { return std::min((block + 1) * block_nodes, shape.size()); };
-  std::vector<std::uint32_t> last_items(blocks);
-  std::uint32_t item = 0;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    for (std::size_t i = b * block_nodes; i < block_end(b); ++i) item += shape[i];
+  const size_t blocks = (shape.size() + block_nodes - 1) / block_nodes;
+  const auto block_end = [&](size_t block) { return std::min((block + 1) * block_nodes, shape.size()); };
+  std::vector<uint32_t> last_items(blocks);
+  uint32_t item = 0;
+  for (size_t b = 0; b < blocks; ++b) {
+    for (size_t i = b * block_nodes; i < block_end(b); ++i) item += shape[i];
     last_items[b] = item;
   }
-  std::vector<std::vector<std::uint32_t>> left_open(blocks);
-  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
-    left_open[b] = filler.fill_block(b * block_nodes, block_end(b), last_items[b]);
-  });
-  for (std::size_t b = blocks; b-- > 0;) {
-    for (const std::uint32_t number : left_open[b]) filler.fill_inner(number, pack::none);
+  std::vector<std::vector<uint32_t>> left_open(blocks);
+  tbb::parallel_for(size_t{0}, blocks,
+                    [&](size_t b) { left_open[b] = filler.fill_block(b * block_nodes, block_end(b), last_items[b]); });
+  for (size_t b = blocks; b-- > 0;) {
+    for (const uint32_t number : left_open[b]) filler.fill_inner(number, pack::none);
   }
   if (areas.empty()) return;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, shape.size(), block_nodes), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, shape.size(), block_nodes), [&](const auto& range) {
     for (pack::NodeArea& area : areas.subspan(place.first_node + range.begin(), range.size())) {
       area.area_m2 = rounded(area.area_m2);  // sums first, so that errors do not add up
     }
   });
 }
 
-BvhStats bvh_stats(std::span<const pack::BvhNode> nodes, std::uint32_t first_node) {
+BvhStats bvh_stats(std::span<const pack::BvhNode> nodes, uint32_t first_node) {
   BvhStats stats;
   stats.nodes = nodes.size();
   double cost = 0;
-  std::vector<std::uint32_t> ends;  // of the subtrees that a node is in
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
+  std::vector<uint32_t> ends;  // of the subtrees that a node is in
+  for (size_t i = 0; i < nodes.size(); ++i) {
     while (!ends.empty() && ends.back() <= first_node + i) ends.pop_back();
     ends.push_back(nodes[i].skip);
-    stats.depth = std::max<std::uint64_t>(stats.depth, ends.size());
+    stats.depth = std::max<uint64_t>(stats.depth, ends.size());
     const bool is_leaf = nodes[i].leaf != pack::none;
     stats.leaves += is_leaf;
     cost += half_area(nodes[i]) * (is_leaf ? 1 + nodes[i].leaf % 16 : 1);

@@ -11,7 +11,7 @@ namespace chandelier::baker {
 /// many are first touched by the threads that fill them.
 struct BvhItem {
   glm::vec3 low;
-  std::uint32_t number;
+  uint32_t number;
   glm::vec3 high;
   float area_m2;
 };

@@ -9,13 +9,13 @@ namespace chandelier::baker {
 
 /// Unchecked; 0 by 0 where there is no header.
 struct ClaimedSize {
-  std::uint64_t width = 0, height = 0;
+  uint64_t width = 0, height = 0;
 
-  std::uint64_t texels() const { return width * height; }
+  uint64_t texels() const { return width * height; }
 };
 
 /// Less than a byte for 2048 texels, far less than any format needs: the size in such a damaged file is not plausible.
-inline bool has_no_picture(const ClaimedSize& size, std::size_t file_bytes) {
+inline bool has_no_picture(const ClaimedSize& size, size_t file_bytes) {
   return size.texels() / 2048 > file_bytes;
 }
 

@@ -2,12 +2,14 @@
 // Pass: removes triangles that show nothing: those without an area, and those that repeat another one.
 #pragma once
 
+#include <cstdint>
+
 #include "packed.h"
 
 namespace chandelier::baker {
 
 struct CleanCounts {
-  std::uint64_t degenerate = 0, duplicate = 0;
+  uint64_t degenerate = 0, duplicate = 0;
 };
 
 /// A duplicate has the same positions, front and material as an earlier triangle of its mesh. If the material is
@@ -18,6 +20,6 @@ struct CleanCounts {
 CleanCounts clean(PackedMesh& mesh, const std::vector<Material>& materials, bool rigid);
 
 /// For each vertex of the mesh, counted through its primitives, the first at the same place.
-std::vector<std::uint32_t> places_of(const PackedMesh& mesh);
+std::vector<uint32_t> places_of(const PackedMesh& mesh);
 
 }  // namespace chandelier::baker

@@ -31,14 +31,14 @@ double area_m2(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 /// A triangle of a piece that is being built.
 struct CutTriangle {
-  std::uint32_t cell;
+  uint32_t cell;
   std::array<pack::VoxelVertex, 3> corners;
 };
 
 /// Cuts the triangles of one batch.
 class BatchCutter {
  public:
-  BatchCutter(const PlacedBatch& placed, const Grid& grid, std::atomic<std::uint64_t>& total, VoxelBlock& block)
+  BatchCutter(const PlacedBatch& placed, const Grid& grid, std::atomic<uint64_t>& total, VoxelBlock& block)
       : placed_(placed), total_(total), block_(block), clipper_(grid) {
     const pack::Material& material = placed.pack.materials[placed.batch.material];
     masked_ = material.alpha_mode == pack::AlphaMode::mask && material.base_color_texture != pack::none;
@@ -46,12 +46,12 @@ class BatchCutter {
   }
 
   void cut_all() {
-    for (std::uint32_t t = 0; t < placed_.triangle_count(); ++t) {
-      const std::size_t before = triangles_.size();
+    for (uint32_t t = 0; t < placed_.triangle_count(); ++t) {
+      const size_t before = triangles_.size();
       const std::array<ClipVertex, 3> corners = corners_of(t);
       block_.input_area_m2 += area_m2(corners[0].position, corners[1].position, corners[2].position);
-      clipper_.cut(corners, [&](std::uint32_t cell, const ClipPolygon& polygon) { fan(cell, polygon); });
-      const std::uint64_t added = triangles_.size() - before;
+      clipper_.cut(corners, [&](uint32_t cell, const ClipPolygon& polygon) { fan(cell, polygon); });
+      const uint64_t added = triangles_.size() - before;
       if (total_.fetch_add(added, std::memory_order_relaxed) + added > most_clipped_triangles) {
         fail("scene", "clipped to voxels it has more than " + std::to_string(most_clipped_triangles) +
                           " triangles: take fewer --voxels, or --voxel-large separate");
@@ -61,34 +61,34 @@ class BatchCutter {
 
   /// Sorted by cell, in the order of the batch's triangles.
   void append_pieces() {
-    std::vector<std::uint64_t> order(triangles_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::uint64_t{triangles_[i].cell} << 32 | i;
+    std::vector<uint64_t> order(triangles_.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = uint64_t{triangles_[i].cell} << 32 | i;
     std::sort(order.begin(), order.end());
     UniqueVertices unique;
-    for (std::size_t i = 0; i < order.size();) {
-      VoxelPiece piece{.cell = static_cast<std::uint32_t>(order[i] >> 32), .batch_instance = placed_.batch_instance};
-      piece.first_number = static_cast<std::uint32_t>(block_.numbers.size());
-      piece.first_vertex = static_cast<std::uint32_t>(block_.vertices.size());
-      const std::size_t first = i;
+    for (size_t i = 0; i < order.size();) {
+      VoxelPiece piece{.cell = static_cast<uint32_t>(order[i] >> 32), .batch_instance = placed_.batch_instance};
+      piece.first_number = static_cast<uint32_t>(block_.numbers.size());
+      piece.first_vertex = static_cast<uint32_t>(block_.vertices.size());
+      const size_t first = i;
       while (i < order.size() && order[i] >> 32 == piece.cell) ++i;
-      piece.triangle_count = static_cast<std::uint32_t>(i - first);
+      piece.triangle_count = static_cast<uint32_t>(i - first);
       unique.reset(3 * (i - first));
-      for (std::size_t k = first; k < i; ++k) {
-        for (const pack::VoxelVertex& corner : triangles_[static_cast<std::uint32_t>(order[k])].corners) {
-          block_.numbers.push_back(static_cast<std::uint16_t>(unique.add(corner)));
+      for (size_t k = first; k < i; ++k) {
+        for (const pack::VoxelVertex& corner : triangles_[static_cast<uint32_t>(order[k])].corners) {
+          block_.numbers.push_back(static_cast<uint16_t>(unique.add(corner)));
         }
       }
       block_.vertices.insert(block_.vertices.end(), unique.vertices().begin(), unique.vertices().end());
-      piece.vertex_count = static_cast<std::uint32_t>(unique.vertices().size());
+      piece.vertex_count = static_cast<uint32_t>(unique.vertices().size());
       block_.pieces.push_back(piece);
     }
   }
 
  private:
-  std::array<ClipVertex, 3> corners_of(std::uint32_t t) const {
+  std::array<ClipVertex, 3> corners_of(uint32_t t) const {
     const Triangle positions = placed_.triangle_ws(t);
     std::array<ClipVertex, 3> out;
-    for (std::uint32_t c = 0; c < 3; ++c) {
+    for (uint32_t c = 0; c < 3; ++c) {
       out[c].position = positions[c];
       if (!masked_) continue;
       const pack::VertexAttributes& attributes = placed_.pack.vertex_attributes[placed_.vertex(t, c)];
@@ -98,8 +98,8 @@ class BatchCutter {
   }
 
   /// Triangles that rounding leaves without area are dropped.
-  void fan(std::uint32_t cell, const ClipPolygon& polygon) {
-    for (std::size_t i = 2; i < polygon.size(); ++i) {
+  void fan(uint32_t cell, const ClipPolygon& polygon) {
+    for (size_t i = 2; i < polygon.size(); ++i) {
       const CutTriangle cut{cell, {rounded(polygon[0]), rounded(polygon[i - 1]), rounded(polygon[i])}};
       const double area = area_m2(cut.corners[0].position_ws, cut.corners[1].position_ws, cut.corners[2].position_ws);
       if (!(area > 0)) continue;
@@ -109,7 +109,7 @@ class BatchCutter {
   }
 
   const PlacedBatch& placed_;
-  std::atomic<std::uint64_t>& total_;
+  std::atomic<uint64_t>& total_;
   VoxelBlock& block_;
   Clipper clipper_;
   bool masked_ = false, uv1_ = false;
@@ -121,7 +121,7 @@ class BatchCutter {
 void split(const ClipPolygon& polygon, int axis, double plane, ClipPolygon& below, ClipPolygon& above) {
   below.clear();
   above.clear();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
+  for (size_t i = 0; i < polygon.size(); ++i) {
     const ClipVertex &a = polygon[i], &b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
     const double from = a.position[axis], to = b.position[axis];
     if (from <= plane) below.push_back(a);
@@ -133,21 +133,21 @@ void split(const ClipPolygon& polygon, int axis, double plane, ClipPolygon& belo
   }
 }
 
-void UniqueVertices::reset(std::size_t most_vertices) {
+void UniqueVertices::reset(size_t most_vertices) {
   vertices_.clear();
   slots_.assign(std::bit_ceil(2 * most_vertices + 1), pack::none);
 }
 
-std::uint32_t UniqueVertices::add(const pack::VoxelVertex& vertex) {
-  std::array<std::uint32_t, 5> words;
+uint32_t UniqueVertices::add(const pack::VoxelVertex& vertex) {
+  std::array<uint32_t, 5> words;
   static_assert(sizeof(words) == sizeof(vertex));
   std::memcpy(words.data(), &vertex, sizeof(words));
-  std::uint64_t hash = 0;
-  for (const std::uint32_t word : words) hash = std::rotl((hash ^ word) * 0x9E3779B97F4A7C15u, 29);
-  const std::size_t mask = slots_.size() - 1;
-  for (std::size_t slot = hash & mask;; slot = (slot + 1) & mask) {
+  uint64_t hash = 0;
+  for (const uint32_t word : words) hash = std::rotl((hash ^ word) * 0x9E3779B97F4A7C15u, 29);
+  const size_t mask = slots_.size() - 1;
+  for (size_t slot = hash & mask;; slot = (slot + 1) & mask) {
     if (slots_[slot] == pack::none) {
-      slots_[slot] = static_cast<std::uint32_t>(vertices_.size());
+      slots_[slot] = static_cast<uint32_t>(vertices_.size());
       vertices_.push_back(vertex);
       return slots_[slot];
     }
@@ -155,7 +155,7 @@ std::uint32_t UniqueVertices::add(const pack::VoxelVertex& vertex) {
   }
 }
 
-void bin_clipped(const PlacedBatch& placed, const Grid& grid, std::atomic<std::uint64_t>& total, VoxelBlock& block) {
+void bin_clipped(const PlacedBatch& placed, const Grid& grid, std::atomic<uint64_t>& total, VoxelBlock& block) {
   BatchCutter cutter(placed, grid, total, block);
   cutter.cut_all();
   cutter.append_pieces();

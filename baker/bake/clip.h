@@ -46,7 +46,7 @@ class Clipper {
       emit(grid_.number(cell_), std::as_const(parts_[3]));
       return;
     }
-    ClipPolygon &rest = parts_[static_cast<std::size_t>(axis)], &part = parts_[static_cast<std::size_t>(axis) + 1];
+    ClipPolygon &rest = parts_[static_cast<size_t>(axis)], &part = parts_[static_cast<size_t>(axis) + 1];
     double low = rest[0].position[axis], high = low;
     for (const ClipVertex& vertex : rest) {
       low = std::min(low, vertex.position[axis]);
@@ -74,20 +74,20 @@ class Clipper {
 class UniqueVertices {
  public:
   /// Makes it empty, with room for this many.
-  void reset(std::size_t most_vertices);
+  void reset(size_t most_vertices);
   /// The number of the vertex that equals this one, which is appended where there is none.
-  std::uint32_t add(const pack::VoxelVertex& vertex);
+  uint32_t add(const pack::VoxelVertex& vertex);
   const std::vector<pack::VoxelVertex>& vertices() const { return vertices_; }
 
  private:
   std::vector<pack::VoxelVertex> vertices_;
-  std::vector<std::uint32_t> slots_;  // open addressing: numbers of vertices; a power of two, at most half full
+  std::vector<uint32_t> slots_;  // open addressing: numbers of vertices; a power of two, at most half full
 };
 
-constexpr std::uint64_t most_clipped_triangles = std::uint64_t{1} << 28;
+constexpr uint64_t most_clipped_triangles = uint64_t{1} << 28;
 
 /// Appends a batch's triangles to `block`, cut to cells, each piece with vertices of its own. `total` counts the
 /// triangles of all blocks. Throws Error where they become more than most_clipped_triangles.
-void bin_clipped(const PlacedBatch& placed, const Grid& grid, std::atomic<std::uint64_t>& total, VoxelBlock& block);
+void bin_clipped(const PlacedBatch& placed, const Grid& grid, std::atomic<uint64_t>& total, VoxelBlock& block);
 
 }  // namespace chandelier::baker

@@ -5,6 +5,7 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -20,12 +21,11 @@
 namespace chandelier::baker {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = std::vector<uint8_t>;
 
-bool starts_with(const std::vector<std::uint8_t>& bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() &&
-         std::equal(magic.begin(), magic.end(), bytes.begin(),
-                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+bool starts_with(const std::vector<uint8_t>& bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin(),
+                                                    [](char a, uint8_t b) { return static_cast<uint8_t>(a) == b; });
 }
 
 bool is_png(const EncodedImage& image) {
@@ -46,12 +46,12 @@ std::string name_of_format(const EncodedImage& image) {
 }
 
 /// RGBA from 1 to 4 channels; one or two are grey, or grey and alpha.
-std::vector<std::uint8_t> to_rgba(std::vector<std::uint8_t>&& in, std::size_t texels, std::size_t channels) {
+std::vector<uint8_t> to_rgba(std::vector<uint8_t>&& in, size_t texels, size_t channels) {
   if (channels == 4) return std::move(in);
-  std::vector<std::uint8_t> out(4 * texels, 255);
-  for (std::size_t i = 0; i < texels; ++i) {
-    const std::uint8_t* from = in.data() + i * channels;
-    for (std::size_t c = 0; c < 3; ++c) out[4 * i + c] = channels < 3 ? from[0] : from[c];
+  std::vector<uint8_t> out(4 * texels, 255);
+  for (size_t i = 0; i < texels; ++i) {
+    const uint8_t* from = in.data() + i * channels;
+    for (size_t c = 0; c < 3; ++c) out[4 * i + c] = channels < 3 ? from[0] : from[c];
     if (channels == 2) out[4 * i + 3] = from[1];
   }
   return out;
@@ -90,9 +90,9 @@ DecodedImage decode_webp(const EncodedImage& image) {
     decoded.fault = "its alpha cannot be told from its colours";
     return decoded;
   }
-  for (std::size_t i = 0; i < opaque.values.size() / 3; ++i) {
-    std::copy_n(opaque.values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
-                decoded.values.begin() + static_cast<std::ptrdiff_t>(4 * i));
+  for (size_t i = 0; i < opaque.values.size() / 3; ++i) {
+    std::copy_n(opaque.values.begin() + static_cast<ptrdiff_t>(3 * i), 3,
+                decoded.values.begin() + static_cast<ptrdiff_t>(4 * i));
   }
   return decoded;
 }
@@ -120,7 +120,7 @@ DecodedImage decode_any(const EncodedImage& image, std::string& damage) {
 
 }  // namespace
 
-void check_image_size(std::int64_t width, std::int64_t height, const std::string& where) {
+void check_image_size(int64_t width, int64_t height, const std::string& where) {
   if (width >= 1 && height >= 1 && width <= pack::max_image_size && height <= pack::max_image_size) return;
   fail(where, "size is out of range, 1 to " + std::to_string(pack::max_image_size) + " (" + std::to_string(width) +
                   "x" + std::to_string(height) + ")");
@@ -134,9 +134,9 @@ DecodedTexels decode_image(const EncodedImage& image) {
     fail(image.where, damage.empty() ? "cannot be decoded: " + shortened(decoded.fault, 200) : damage);
   }
   refuse_empty(image, damage);
-  const std::size_t texels = std::size_t(decoded.width) * std::size_t(decoded.height);
-  return {{static_cast<std::uint32_t>(decoded.width), static_cast<std::uint32_t>(decoded.height),
-           to_rgba(std::move(decoded.values), texels, static_cast<std::size_t>(decoded.channels))},
+  const size_t texels = size_t(decoded.width) * size_t(decoded.height);
+  return {{static_cast<uint32_t>(decoded.width), static_cast<uint32_t>(decoded.height),
+           to_rgba(std::move(decoded.values), texels, static_cast<size_t>(decoded.channels))},
           printable(shortened(damage, 200))};  // it may hold bytes of the file
 }
 

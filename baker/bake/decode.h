@@ -2,6 +2,7 @@
 // PNG, JPEG and WebP bytes into texels.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "../scene.h"
@@ -11,7 +12,7 @@
 namespace chandelier::baker {
 
 /// Throws Error above 16384 texels, or below 1.
-void check_image_size(std::int64_t width, std::int64_t height, const std::string& where);
+void check_image_size(int64_t width, int64_t height, const std::string& where);
 
 /// An image, and the damage of its file if something is still visible, as in viewers. Part of the texels may then be
 /// filled in.

@@ -35,11 +35,11 @@ std::string first_line(const std::string& text, ImageFormat format) {
   return line.empty() ? "unknown" : line;
 }
 
-DecodedImage decode(const std::vector<std::uint8_t>& file, ImageFormat format, std::int64_t max_size) {
+DecodedImage decode(const std::vector<uint8_t>& file, ImageFormat format, int64_t max_size) {
   DecodedImage out;
   OIIO::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not premultiplied
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(file.data()), file.size());
+  OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(file.data()), file.size());
   void* proxy = &memory;  // among the hints: the JPEG reader forgets open()'s own argument
   hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   const auto input = OIIO::ImageInput::open(name_of(format), &hints, &memory);
@@ -52,9 +52,9 @@ DecodedImage decode(const std::vector<std::uint8_t>& file, ImageFormat format, s
   out.width = spec.width;
   out.height = spec.height;
   out.channels = spec.nchannels;
-  const auto in_range = [](std::int64_t value, std::int64_t most) { return value >= 1 && value <= most; };
+  const auto in_range = [](int64_t value, int64_t most) { return value >= 1 && value <= most; };
   if (!in_range(out.width, max_size) || !in_range(out.height, max_size) || !in_range(out.channels, 4)) return out;
-  out.values.resize(static_cast<std::size_t>(out.width * out.height * out.channels));
+  out.values.resize(static_cast<size_t>(out.width * out.height * out.channels));
   const bool read = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, out.values.data());
   // libjpeg goes on with grey after damage, and only warns: the reader keeps its warnings as its error.
   if (!read) {

@@ -13,16 +13,15 @@ namespace chandelier::baker {
 enum class ImageFormat { png, jpeg, webp };
 
 struct DecodedImage {
-  std::int64_t width = 0, height = 0;
+  int64_t width = 0, height = 0;
   int channels = 0;
-  std::vector<std::uint8_t> values;  // as stored: rows from the top, not premultiplied, but for WebP's alpha
-  std::string fault;                 // why there are none, in OpenImageIO's words; or nothing
-  std::string damage;                // what the decoder noticed and went on after, likewise
+  std::vector<uint8_t> values;  // as stored: rows from the top, not premultiplied, but for WebP's alpha
+  std::string fault;            // why there are none, in OpenImageIO's words; or nothing
+  std::string damage;           // what the decoder noticed and went on after, likewise
 };
 
 /// Decodes a whole file. There are no values if a side is not 1 to `max_size` or channels are not 1 to 4.
-using DecodeFunction = DecodedImage (*)(const std::vector<std::uint8_t>& file, ImageFormat format,
-                                        std::int64_t max_size);
+using DecodeFunction = DecodedImage (*)(const std::vector<uint8_t>& file, ImageFormat format, int64_t max_size);
 
 /// The only thing that the module exports: a DecodeFunction under this name.
 inline constexpr const char* decode_symbol = "chandelier_decode_image";

@@ -13,12 +13,12 @@ namespace {
 
 /// The width and height of an image that is converted from others are the larger ones of theirs.
 void refuse_odd_pair(const EncodedImage& image, const std::vector<Texels>& sources) {
-  constexpr std::uint64_t most_growth = 4, free_texels = std::uint64_t{1} << 24;
-  std::uint64_t width = 0, height = 0, largest = 0;
+  constexpr uint64_t most_growth = 4, free_texels = uint64_t{1} << 24;
+  uint64_t width = 0, height = 0, largest = 0;
   for (const Texels& source : sources) {
-    width = std::max<std::uint64_t>(width, source.width);
-    height = std::max<std::uint64_t>(height, source.height);
-    largest = std::max(largest, std::uint64_t{source.width} * source.height);
+    width = std::max<uint64_t>(width, source.width);
+    height = std::max<uint64_t>(height, source.height);
+    largest = std::max(largest, uint64_t{source.width} * source.height);
   }
   if (width * height <= std::max(free_texels, most_growth * largest)) return;
   const auto size = [](const Texels& of) { return std::to_string(of.width) + "x" + std::to_string(of.height); };
@@ -29,10 +29,10 @@ void refuse_odd_pair(const EncodedImage& image, const std::vector<Texels>& sourc
 
 }  // namespace
 
-std::uint64_t claimed_texels(const Scene& scene, std::uint32_t image) {
-  std::uint64_t texels = 0;
+uint64_t claimed_texels(const Scene& scene, uint32_t image) {
+  uint64_t texels = 0;
   ClaimedSize converted;
-  for_each_source(scene, image, [&](std::uint32_t source) {
+  for_each_source(scene, image, [&](uint32_t source) {
     const ClaimedSize size = claimed_size(scene.images[source]);
     texels += size.texels();
     converted = {std::max(converted.width, size.width), std::max(converted.height, size.height)};
@@ -41,10 +41,10 @@ std::uint64_t claimed_texels(const Scene& scene, std::uint32_t image) {
   return texels + 2 * converted.texels();  // two images are made of it
 }
 
-SceneTexels decode_image(const Scene& scene, std::uint32_t image) {
+SceneTexels decode_image(const Scene& scene, uint32_t image) {
   SceneTexels out;
   std::vector<Texels> sources;
-  for_each_source(scene, image, [&](std::uint32_t source) {
+  for_each_source(scene, image, [&](uint32_t source) {
     DecodedTexels decoded = decode_image(scene.images[source]);
     out.damage.push_back(std::move(decoded.damage));
     sources.push_back(std::move(decoded.texels));
@@ -63,10 +63,10 @@ SceneTexels decode_image(const Scene& scene, std::uint32_t image) {
   return out;
 }
 
-void tell_damage(Scene& scene, std::uint32_t image, const std::vector<std::string>& damage, bool strict,
+void tell_damage(Scene& scene, uint32_t image, const std::vector<std::string>& damage, bool strict,
                  Warnings& warnings) {
-  std::size_t number = 0;
-  for_each_source(scene, image, [&](std::uint32_t source) {
+  size_t number = 0;
+  for_each_source(scene, image, [&](uint32_t source) {
     const std::string& what = damage.at(number++);
     EncodedImage& encoded = scene.images[source];
     if (what.empty() || encoded.damage_told) return;

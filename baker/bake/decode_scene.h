@@ -2,6 +2,7 @@
 // Texels of a scene's images, including those that are converted from others.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,16 +15,16 @@ namespace chandelier::baker {
 
 /// Calls `visit` with each image that holds the bytes of an image: itself, or those that it is converted from.
 template <typename Visit>
-void for_each_source(const Scene& scene, std::uint32_t image, Visit visit) {
+void for_each_source(const Scene& scene, uint32_t image, Visit visit) {
   const std::optional<SpecularGlossiness>& from = scene.images[image].converted_from;
   if (!from) return visit(image);
-  for (const std::uint32_t source : {from->diffuse, from->specular_glossiness}) {
+  for (const uint32_t source : {from->diffuse, from->specular_glossiness}) {
     if (source != no_index) visit(source);
   }
 }
 
 /// Texels that decoding an image has in memory at a time, as the headers of its sources claim.
-std::uint64_t claimed_texels(const Scene& scene, std::uint32_t image);
+uint64_t claimed_texels(const Scene& scene, uint32_t image);
 
 /// Texels as a colour and as anything else: two images only where they are converted.
 struct SceneTexels {
@@ -39,10 +40,9 @@ struct SceneTexels {
 
 /// Throws Error if the image, or one that it is converted from, cannot be decoded; or if the two sources differ so much
 /// in shape that an image of the larger width and height would be far larger than both.
-SceneTexels decode_image(const Scene& scene, std::uint32_t image);
+SceneTexels decode_image(const Scene& scene, uint32_t image);
 
 /// Warns of each damaged source of an image, once; `strict` throws Error instead.
-void tell_damage(Scene& scene, std::uint32_t image, const std::vector<std::string>& damage, bool strict,
-                 Warnings& warnings);
+void tell_damage(Scene& scene, uint32_t image, const std::vector<std::string>& damage, bool strict, Warnings& warnings);
 
 }  // namespace chandelier::baker

@@ -15,32 +15,32 @@ namespace chandelier::baker {
 /// For each of `count` elements the number of the first that equals it. `hash(i)` is 32 bits, of which all must count;
 /// `equal(i, j)` decides. Elements are dealt by their hash to tables that fit a cache, a task each, in ascending order.
 template <typename Hash, typename Equal>
-std::vector<std::uint32_t> first_equal(std::size_t count, Hash hash, Equal equal) {
-  constexpr std::uint32_t empty_slot = 0xFFFFFFFFu;
-  constexpr std::size_t table_elements = 1 << 14;
+std::vector<uint32_t> first_equal(size_t count, Hash hash, Equal equal) {
+  constexpr uint32_t empty_slot = 0xFFFFFFFFu;
+  constexpr size_t table_elements = 1 << 14;
   struct Keyed {
-    std::uint32_t hash, element;
+    uint32_t hash, element;
   };
   const int shift = 32 - std::clamp(static_cast<int>(std::bit_width(count / table_elements)), 0, 12);
-  const auto table_of = [&](std::uint32_t h) { return shift == 32 ? 0 : h >> shift; };
+  const auto table_of = [&](uint32_t h) { return shift == 32 ? 0 : h >> shift; };
 
-  std::vector<std::uint32_t> first(count);  // the hashes, until they are dealt
-  tbb::parallel_for(std::size_t{0}, (count + 4095) / 4096, [&](std::size_t block) {
-    for (std::size_t i = block * 4096; i < std::min(count, block * 4096 + 4096); ++i) first[i] = hash(i);
+  std::vector<uint32_t> first(count);  // the hashes, until they are dealt
+  tbb::parallel_for(size_t{0}, (count + 4095) / 4096, [&](size_t block) {
+    for (size_t i = block * 4096; i < std::min(count, block * 4096 + 4096); ++i) first[i] = hash(i);
   });
-  std::vector<std::size_t> end((std::size_t{1} << (32 - shift)) + 1, 0);
-  for (const std::uint32_t h : first) ++end[table_of(h) + 1];
-  for (std::size_t t = 1; t < end.size(); ++t) end[t] += end[t - 1];
+  std::vector<size_t> end((size_t{1} << (32 - shift)) + 1, 0);
+  for (const uint32_t h : first) ++end[table_of(h) + 1];
+  for (size_t t = 1; t < end.size(); ++t) end[t] += end[t - 1];
   std::vector<Keyed> dealt(count);
-  for (std::size_t i = 0; i < count; ++i) dealt[end[table_of(first[i])]++] = {first[i], static_cast<std::uint32_t>(i)};
+  for (size_t i = 0; i < count; ++i) dealt[end[table_of(first[i])]++] = {first[i], static_cast<uint32_t>(i)};
 
-  tbb::parallel_for(std::size_t{0}, end.size() - 1, [&](std::size_t t) {
-    const std::size_t begin = t == 0 ? 0 : end[t - 1];  // dealing has moved each end to the next one's begin
-    const std::size_t size = std::bit_ceil(std::max<std::size_t>(2 * (end[t] - begin), 2));
+  tbb::parallel_for(size_t{0}, end.size() - 1, [&](size_t t) {
+    const size_t begin = t == 0 ? 0 : end[t - 1];  // dealing has moved each end to the next one's begin
+    const size_t size = std::bit_ceil(std::max<size_t>(2 * (end[t] - begin), 2));
     std::vector<Keyed> table(size, Keyed{0, empty_slot});
-    for (std::size_t i = begin; i < end[t]; ++i) {
+    for (size_t i = begin; i < end[t]; ++i) {
       const Keyed key = dealt[i];
-      std::size_t slot = key.hash & (size - 1);
+      size_t slot = key.hash & (size - 1);
       while (table[slot].element != empty_slot &&
              (table[slot].hash != key.hash || !equal(table[slot].element, key.element))) {
         slot = (slot + 1) & (size - 1);
@@ -53,11 +53,11 @@ std::vector<std::uint32_t> first_equal(std::size_t count, Hash hash, Equal equal
 }
 
 /// Mixes all bits of the words of a record into 32 (the multiplier and the final mix are those of MurmurHash3).
-inline std::uint32_t hash_words(const std::uint32_t* words, std::size_t count) {
-  std::uint64_t h = count;
-  for (std::size_t i = 0; i < count; ++i) h = (h ^ words[i]) * 0xff51afd7ed558ccdull, h ^= h >> 29;
+inline uint32_t hash_words(const uint32_t* words, size_t count) {
+  uint64_t h = count;
+  for (size_t i = 0; i < count; ++i) h = (h ^ words[i]) * 0xff51afd7ed558ccdull, h ^= h >> 29;
   h *= 0xc4ceb9fe1a85ec53ull;
-  return static_cast<std::uint32_t>(h >> 32);
+  return static_cast<uint32_t>(h >> 32);
 }
 
 }  // namespace chandelier::baker

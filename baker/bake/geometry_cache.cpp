@@ -37,9 +37,9 @@ void for_each_geometry_section(pack::Contents& contents, const pack::View& view,
   visit(contents.skin_vertices, view.skin_vertices);
 }
 
-std::string notes_of(const std::vector<PassReport>& passes, std::size_t first) {
+std::string notes_of(const std::vector<PassReport>& passes, size_t first) {
   Json out = Json::array();
-  for (std::size_t i = first; i < passes.size(); ++i) {
+  for (size_t i = first; i < passes.size(); ++i) {
     out.push_back({{"name", passes[i].name}, {"bytes", passes[i].bytes}, {"counts", passes[i].counts}});
   }
   return Json{{"passes", out}}.dump();
@@ -51,7 +51,7 @@ std::vector<PassReport> passes_of(const std::string& notes) {
   for (const Json& in : all.at("passes")) {
     PassReport& pass = out.emplace_back();
     pass.name = in.at("name").get<std::string>();
-    pass.bytes = in.at("bytes").get<std::uint64_t>();
+    pass.bytes = in.at("bytes").get<uint64_t>();
     pass.counts = in.at("counts").get<decltype(pass.counts)>();
     pass.cached = true;
   }
@@ -93,12 +93,12 @@ bool load_geometry(Cache& cache, const std::string& name, Report& report, String
   return true;
 }
 
-void store_geometry(Cache& cache, const std::string& name, const Report& report, std::size_t first_pass,
+void store_geometry(Cache& cache, const std::string& name, const Report& report, size_t first_pass,
                     const pack::Contents& pack) {
   std::vector<pack::Material> materials = pack.materials;
   for (pack::Material& material : materials) {
-    for (std::uint32_t* texture : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                   &material.normal_texture, &material.occlusion_texture, &material.emissive_texture}) {
+    for (uint32_t* texture : {&material.base_color_texture, &material.metallic_roughness_texture,
+                              &material.normal_texture, &material.occlusion_texture, &material.emissive_texture}) {
       *texture = pack::none;
     }
   }

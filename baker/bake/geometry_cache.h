@@ -2,6 +2,7 @@
 // What bake_geometry() makes, kept in a cache.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "../cache.h"
@@ -15,7 +16,7 @@ namespace chandelier::baker {
 bool load_geometry(Cache& cache, const std::string& entry, Report& report, Strings& strings, pack::Contents& pack);
 
 /// `first_pass`: of the report, where bake_geometry() began.
-void store_geometry(Cache& cache, const std::string& entry, const Report& report, std::size_t first_pass,
+void store_geometry(Cache& cache, const std::string& entry, const Report& report, size_t first_pass,
                     const pack::Contents& pack);
 
 }  // namespace chandelier::baker

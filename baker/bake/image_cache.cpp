@@ -14,38 +14,38 @@ namespace {
 using Json = nlohmann::json;
 
 /// The fault of an entry, or an empty text.
-std::string read_entry(const CacheEntry& entry, std::size_t source_count, std::size_t request_count, MadeImages& made) {
+std::string read_entry(const CacheEntry& entry, size_t source_count, size_t request_count, MadeImages& made) {
   const pack::View& view = entry.pack.view();
   const Json notes = Json::parse(entry.notes);
   made.damage = notes.at("damage").get<std::vector<std::string>>();
-  made.of_request = notes.at("of_request").get<std::vector<std::size_t>>();
+  made.of_request = notes.at("of_request").get<std::vector<size_t>>();
   const Json& images = notes.at("images");
   if (made.damage.size() != source_count || made.of_request.size() != request_count ||
       images.size() != view.images.size())
     return "has other images";
-  for (const std::size_t number : made.of_request) {
+  for (const size_t number : made.of_request) {
     if (number >= images.size()) return "has other images";
   }
-  for (std::size_t i = 0; i < images.size(); ++i) {
+  for (size_t i = 0; i < images.size(); ++i) {
     StoredTexels& out = made.images.emplace_back();
     out.record = view.images[i];
-    const pack::Texels texels = pack::texels_of(view, static_cast<std::uint32_t>(i));
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(texels.bytes().data());
+    const pack::Texels texels = pack::texels_of(view, static_cast<uint32_t>(i));
+    const auto* bytes = reinterpret_cast<const uint8_t*>(texels.bytes().data());
     out.bytes.assign(bytes, bytes + texels.bytes().size());
-    out.texels = images[i].at("texels").get<std::uint64_t>();
-    out.squared_error = images[i].at("squared_error").get<std::uint64_t>();
-    out.values = images[i].at("values").get<std::uint64_t>();
+    out.texels = images[i].at("texels").get<uint64_t>();
+    out.squared_error = images[i].at("squared_error").get<uint64_t>();
+    out.values = images[i].at("values").get<uint64_t>();
   }
   return {};
 }
 
-void add_bytes(CacheKey& key, const Scene& scene, std::uint32_t image) {
+void add_bytes(CacheKey& key, const Scene& scene, uint32_t image) {
   if (image == no_index) return key.add_text({});
-  const std::vector<std::uint8_t>& bytes = scene.images[image].bytes;
+  const std::vector<uint8_t>& bytes = scene.images[image].bytes;
   key.add_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-void add_image(CacheKey& key, const Scene& scene, std::uint32_t image) {
+void add_image(CacheKey& key, const Scene& scene, uint32_t image) {
   const std::optional<SpecularGlossiness>& from = scene.images[image].converted_from;
   key.add(from.has_value());
   if (!from) return add_bytes(key, scene, image);
@@ -54,7 +54,7 @@ void add_image(CacheKey& key, const Scene& scene, std::uint32_t image) {
     for (int c = 0; c < 3; ++c) key.add(factor[c]);
   }
   key.add(glossiness_factor);
-  for (const std::uint32_t source : {diffuse, specular_glossiness}) {
+  for (const uint32_t source : {diffuse, specular_glossiness}) {
     key.add(source == no_index);
     add_bytes(key, scene, source);
   }
@@ -62,7 +62,7 @@ void add_image(CacheKey& key, const Scene& scene, std::uint32_t image) {
 
 }  // namespace
 
-std::string image_entry(const Scene& scene, std::uint32_t image, const std::vector<ImageRequest>& requests,
+std::string image_entry(const Scene& scene, uint32_t image, const std::vector<ImageRequest>& requests,
                         const ImageSettings& settings) {
   const auto& [textures, max_size, strict] = settings;  // strict: the entry says what is damaged
   CacheKey key("image");
@@ -77,8 +77,7 @@ std::string image_entry(const Scene& scene, std::uint32_t image, const std::vect
   return key.name();
 }
 
-bool load_images(Cache& cache, const std::string& name, std::size_t source_count, std::size_t request_count,
-                 MadeImages& made) {
+bool load_images(Cache& cache, const std::string& name, size_t source_count, size_t request_count, MadeImages& made) {
   const std::unique_ptr<CacheEntry> entry = cache.load(name);
   if (!entry) return false;
   std::string fault;

@@ -16,27 +16,26 @@ namespace chandelier::baker {
 /// Texels as the pack holds them.
 struct StoredTexels {
   pack::Image record;
-  std::vector<std::uint8_t> bytes;
-  std::uint64_t texels = 0;         // of all levels
-  std::uint64_t squared_error = 0;  // what compression lost, as in Blocks
-  std::uint64_t values = 0;
+  std::vector<uint8_t> bytes;
+  uint64_t texels = 0;         // of all levels
+  uint64_t squared_error = 0;  // what compression lost, as in Blocks
+  uint64_t values = 0;
 };
 
 /// For all requests of one image's bytes.
 struct MadeImages {
   std::vector<StoredTexels> images;
-  std::vector<std::size_t> of_request;  // number among `images`
-  std::vector<std::string> damage;      // of each file, as SceneTexels has it; nothing else where there is an error
+  std::vector<size_t> of_request;   // number among `images`
+  std::vector<std::string> damage;  // of each file, as SceneTexels has it; nothing else where there is an error
   std::string error;
 };
 
 /// The name of the entry of an image with these requests, in this order.
-std::string image_entry(const Scene& scene, std::uint32_t image, const std::vector<ImageRequest>& requests,
+std::string image_entry(const Scene& scene, uint32_t image, const std::vector<ImageRequest>& requests,
                         const ImageSettings& settings);
 
 /// False if the cache has no such entry, or if its number of files or requests differs.
-bool load_images(Cache& cache, const std::string& entry, std::size_t source_count, std::size_t request_count,
-                 MadeImages& made);
+bool load_images(Cache& cache, const std::string& entry, size_t source_count, size_t request_count, MadeImages& made);
 void store_images(Cache& cache, const std::string& entry, const MadeImages& made);
 
 }  // namespace chandelier::baker

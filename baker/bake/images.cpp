@@ -20,7 +20,7 @@ namespace chandelier::baker {
 namespace {
 
 /// Decoded texels in memory at a time, apart from an image that alone has more; each takes up to 16 bytes.
-constexpr std::uint64_t texels_at_once = std::uint64_t{32} << 20;
+constexpr uint64_t texels_at_once = uint64_t{32} << 20;
 
 struct Formats {
   pack::ImageFormat raw, blocks;
@@ -46,7 +46,7 @@ StoredTexels stored(std::vector<Texels>&& levels, ImageUse use, TextureMode mode
   StoredTexels out;
   out.record.width = levels[0].width;
   out.record.height = levels[0].height;
-  out.record.level_count = static_cast<std::uint32_t>(levels.size());
+  out.record.level_count = static_cast<uint32_t>(levels.size());
   out.record.format = formats.raw;
   pack::Image in_blocks = out.record;
   in_blocks.format = formats.blocks;
@@ -70,7 +70,7 @@ StoredTexels stored(std::vector<Texels>&& levels, ImageUse use, TextureMode mode
 }
 
 bool is_opaque(const Texels& texels) {
-  for (std::size_t i = 3; i < texels.rgba.size(); i += 4) {
+  for (size_t i = 3; i < texels.rgba.size(); i += 4) {
     if (texels.rgba[i] != 255) return false;
   }
   return true;
@@ -78,8 +78,8 @@ bool is_opaque(const Texels& texels) {
 
 /// The requests of images that are the same, byte by byte.
 struct Job {
-  std::uint32_t image;                // the first of them
-  std::vector<std::size_t> requests;  // their numbers
+  uint32_t image;                // the first of them
+  std::vector<size_t> requests;  // their numbers
 };
 
 /// For each image the first that is the same, which may be itself.
@@ -87,7 +87,7 @@ class SameImages {
  public:
   explicit SameImages(const Scene& scene) : scene_(scene) {}
 
-  std::uint32_t first(std::uint32_t image) {
+  uint32_t first(uint32_t image) {
     if (image == no_index) return no_index;
     const EncodedImage& encoded = scene_.images[image];
     if (!encoded.converted_from) {
@@ -106,15 +106,15 @@ class SameImages {
 
  private:
   const Scene& scene_;
-  std::unordered_map<std::string_view, std::uint32_t> first_of_bytes_;
-  std::vector<std::pair<SpecularGlossiness, std::uint32_t>> converted_;
+  std::unordered_map<std::string_view, uint32_t> first_of_bytes_;
+  std::vector<std::pair<SpecularGlossiness, uint32_t>> converted_;
 };
 
 std::vector<Job> jobs_of(const std::vector<ImageRequest>& requests, const Scene& scene) {
   std::vector<Job> jobs;
   SameImages same(scene);
-  std::unordered_map<std::uint32_t, std::size_t> job_of;
-  for (std::size_t i = 0; i < requests.size(); ++i) {
+  std::unordered_map<uint32_t, size_t> job_of;
+  for (size_t i = 0; i < requests.size(); ++i) {
     const auto [it, added] = job_of.try_emplace(same.first(requests[i].image), jobs.size());
     if (added) jobs.push_back({requests[i].image, {}});
     jobs[it->second].requests.push_back(i);
@@ -137,12 +137,12 @@ MadeImages make_images_of(const Job& job, const Scene& scene, const std::vector<
     made.damage = decoded.damage;
     const bool opaque = is_opaque(decoded.color);
     std::vector<Wish> wishes;
-    for (const std::size_t number : job.requests) {
+    for (const size_t number : job.requests) {
       const ImageRequest& request = requests[number];
       const bool masked = request.use == ImageUse::masked_color;
       const Wish wish = masked && opaque ? Wish{ImageUse::color, 0} : Wish{request.use, request.alpha_cutoff};
       const auto known = std::find(wishes.begin(), wishes.end(), wish);
-      made.of_request.push_back(static_cast<std::size_t>(known - wishes.begin()));
+      made.of_request.push_back(static_cast<size_t>(known - wishes.begin()));
       if (known != wishes.end()) continue;
       wishes.push_back(wish);
       made.images.push_back(
@@ -160,11 +160,11 @@ MadeImages find_or_make_images(const Job& job, const Scene& scene, const std::ve
                                const ImageSettings& settings, Cache& cache) {
   if (!cache.is_on()) return make_images_of(job, scene, requests, settings);
   std::vector<ImageRequest> asked;
-  for (const std::size_t number : job.requests) asked.push_back(requests[number]);
+  for (const size_t number : job.requests) asked.push_back(requests[number]);
   const std::string entry = image_entry(scene, job.image, asked, settings);
   MadeImages made;
-  std::size_t sources = 0;
-  for_each_source(scene, job.image, [&](std::uint32_t) { ++sources; });
+  size_t sources = 0;
+  for_each_source(scene, job.image, [&](uint32_t) { ++sources; });
   if (load_images(cache, entry, sources, asked.size(), made)) return made;
   made = make_images_of(job, scene, requests, settings);
   if (made.error.empty()) store_images(cache, entry, made);
@@ -172,9 +172,9 @@ MadeImages find_or_make_images(const Job& job, const Scene& scene, const std::ve
 }
 
 /// How many jobs still need the bytes of each image.
-std::vector<std::uint32_t> count_users(const std::vector<Job>& jobs, const Scene& scene) {
-  std::vector<std::uint32_t> users(scene.images.size(), 0);
-  for (const Job& job : jobs) for_each_source(scene, job.image, [&](std::uint32_t source) { ++users[source]; });
+std::vector<uint32_t> count_users(const std::vector<Job>& jobs, const Scene& scene) {
+  std::vector<uint32_t> users(scene.images.size(), 0);
+  for (const Job& job : jobs) for_each_source(scene, job.image, [&](uint32_t source) { ++users[source]; });
   return users;
 }
 
@@ -182,19 +182,19 @@ std::vector<std::uint32_t> count_users(const std::vector<Job>& jobs, const Scene
 std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<ImageRequest>& requests, Scene& scene,
                             const ImageSettings& settings, const Progress& progress, Cache& cache, Warnings& warnings) {
   std::vector<MadeImages> made(jobs.size());
-  std::vector<std::uint32_t> users = count_users(jobs, scene);
-  for (std::size_t first = 0; first < jobs.size();) {
+  std::vector<uint32_t> users = count_users(jobs, scene);
+  for (size_t first = 0; first < jobs.size();) {
     progress.next("making images, " + std::to_string(first) + " of " + std::to_string(jobs.size()) + " done");
-    std::size_t end = first;
-    for (std::uint64_t texels = 0; end < jobs.size() && (end == first || texels < texels_at_once); ++end) {
+    size_t end = first;
+    for (uint64_t texels = 0; end < jobs.size() && (end == first || texels < texels_at_once); ++end) {
       texels += claimed_texels(scene, jobs[end].image);
     }
     tbb::parallel_for(first, end,
-                      [&](std::size_t i) { made[i] = find_or_make_images(jobs[i], scene, requests, settings, cache); });
+                      [&](size_t i) { made[i] = find_or_make_images(jobs[i], scene, requests, settings, cache); });
     for (; first < end; ++first) {
       if (!made[first].error.empty()) throw Error(made[first].error);
       tell_damage(scene, jobs[first].image, made[first].damage, settings.strict, warnings);
-      for_each_source(scene, jobs[first].image, [&](std::uint32_t source) {
+      for_each_source(scene, jobs[first].image, [&](uint32_t source) {
         if (--users[source] == 0) scene.images[source].bytes = {};
       });
     }
@@ -202,7 +202,7 @@ std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<Imag
   return made;
 }
 
-std::uint32_t add_image(StoredTexels&& image, const std::string& name, Strings& strings, pack::Contents& pack) {
+uint32_t add_image(StoredTexels&& image, const std::string& name, Strings& strings, pack::Contents& pack) {
   image.record.first_byte = pack.image_data.size();
   image.record.stored_bytes = image.bytes.size();
   image.record.codec = pack::ImageCodec::raw;
@@ -215,8 +215,8 @@ std::uint32_t add_image(StoredTexels&& image, const std::string& name, Strings& 
   return fit_u32(pack.images.size() - 1, "images");
 }
 
-void tell(const std::vector<MadeImages>& made, std::size_t requests, PassReport& report) {
-  std::uint64_t images = 0, texels = 0, squared_error = 0, values = 0, damaged = 0;
+void tell(const std::vector<MadeImages>& made, size_t requests, PassReport& report) {
+  uint64_t images = 0, texels = 0, squared_error = 0, values = 0, damaged = 0;
   for (const MadeImages& each : made) {
     images += each.images.size();
     damaged += std::any_of(each.damage.begin(), each.damage.end(), [](const auto& what) { return !what.empty(); });
@@ -244,18 +244,18 @@ void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const 
   const std::vector<Job> jobs = jobs_of(requests, scene);
   std::vector<MadeImages> made = run(jobs, requests, scene, settings, progress, cache, warnings);
   tell(made, requests.size(), report);
-  std::size_t bytes = 0;
+  size_t bytes = 0;
   for (const MadeImages& each : made) {
     for (const StoredTexels& image : each.images) bytes += (image.bytes.size() + 15) / 16 * 16;
   }
   pack.image_data.reserve(bytes);
-  std::vector<std::uint32_t> image_of_request(requests.size());
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    std::vector<std::uint32_t> numbers;
+  std::vector<uint32_t> image_of_request(requests.size());
+  for (size_t i = 0; i < jobs.size(); ++i) {
+    std::vector<uint32_t> numbers;
     for (StoredTexels& image : made[i].images) {
       numbers.push_back(add_image(std::move(image), scene.images[jobs[i].image].name, strings, pack));
     }
-    for (std::size_t r = 0; r < jobs[i].requests.size(); ++r) {
+    for (size_t r = 0; r < jobs[i].requests.size(); ++r) {
       image_of_request[jobs[i].requests[r]] = numbers[made[i].of_request[r]];
     }
   }

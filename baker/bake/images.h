@@ -3,6 +3,7 @@
 #pragma once
 
 #include <compare>
+#include <cstdint>
 
 #include "../cache.h"
 #include "../error.h"
@@ -23,12 +24,12 @@ enum class TextureMode {
 
 struct ImageSettings {
   TextureMode textures = TextureMode::bc;
-  std::uint32_t max_size = 0;  // largest width or height, texels; 0: no limit
-  bool strict = false;         // a damaged image is an error, and not a warning
+  uint32_t max_size = 0;  // largest width or height, texels; 0: no limit
+  bool strict = false;    // a damaged image is an error, and not a warning
 };
 
 struct ImageRequest {
-  std::uint32_t image;  // of the scene
+  uint32_t image;  // of the scene
   ImageUse use;
   float alpha_cutoff = 0;  // with masked_color
 

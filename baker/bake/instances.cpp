@@ -14,11 +14,11 @@ namespace chandelier::baker {
 namespace {
 
 /// The number of the mesh's record in the pack, or no_index.
-std::uint32_t record_of(const MeshInstance& instance, const std::vector<MeshRecords>& meshes) {
+uint32_t record_of(const MeshInstance& instance, const std::vector<MeshRecords>& meshes) {
   return is_mirrored(instance) ? meshes[instance.mesh].mirrored : meshes[instance.mesh].plain;
 }
 
-pack::Instance instance_record(const MeshInstance& instance, std::uint32_t mesh, Strings& strings) {
+pack::Instance instance_record(const MeshInstance& instance, uint32_t mesh, Strings& strings) {
   pack::Instance out;
   out.mesh = mesh;
   for (int row = 0; row < 3; ++row) {
@@ -54,7 +54,7 @@ void set_bounds(const pack::Contents& pack, pack::BatchInstance& record) {
   const pack::Batch& batch = pack.batches[record.batch];
   const pack::Instance& instance = pack.instances[record.instance];
   glm::dvec3 low(INFINITY), high(-INFINITY);
-  for (std::uint32_t i = 0; i < batch.index_count; ++i) {
+  for (uint32_t i = 0; i < batch.index_count; ++i) {
     const glm::dvec3 p = to_world(instance, pack.positions[pack.indices[batch.first_index + i].vertex].position_ls);
     low = glm::min(low, p);
     high = glm::max(high, p);
@@ -74,12 +74,11 @@ void check_finite(const pack::BatchInstance& record, const std::string& where) {
 }
 
 /// A node costs a file few bytes, and each of its mesh's batches becomes a record: counted before any memory is taken.
-std::size_t count_batch_instances(const Scene& scene, const std::vector<MeshRecords>& meshes,
-                                  const pack::Contents& pack) {
-  constexpr std::uint64_t most_batches = 1ull << 28;
-  std::uint64_t count = 0;
+size_t count_batch_instances(const Scene& scene, const std::vector<MeshRecords>& meshes, const pack::Contents& pack) {
+  constexpr uint64_t most_batches = 1ull << 28;
+  uint64_t count = 0;
   for (const MeshInstance& instance : scene.instances) {
-    const std::uint32_t mesh = record_of(instance, meshes);
+    const uint32_t mesh = record_of(instance, meshes);
     if (mesh != no_index) count += pack.meshes[mesh].batch_count;
     if (count > most_batches) {
       fail(instance.where, "the instances up to here have more than " + std::to_string(most_batches) + " batches (" +
@@ -91,7 +90,7 @@ std::size_t count_batch_instances(const Scene& scene, const std::vector<MeshReco
 
 /// Sorting key: opaque before masked, then material; the rest only for a fixed order.
 auto draw_order(const pack::Contents& pack, const pack::BatchInstance& record) {
-  const std::uint32_t material = pack.batches[record.batch].material;
+  const uint32_t material = pack.batches[record.batch].material;
   return std::tuple(pack.materials[material].alpha_mode, material, record.instance, record.batch);
 }
 
@@ -102,17 +101,17 @@ void make_instances(const Scene& scene, const std::vector<MeshRecords>& meshes, 
   pack.batch_instances.reserve(count_batch_instances(scene, meshes, pack));
   std::vector<const MeshInstance*> sources;
   for (const MeshInstance& instance : scene.instances) {
-    const std::uint32_t mesh = record_of(instance, meshes);
+    const uint32_t mesh = record_of(instance, meshes);
     if (mesh == no_index) continue;
-    const std::uint32_t number = fit_u32(pack.instances.size(), "instances");
+    const uint32_t number = fit_u32(pack.instances.size(), "instances");
     pack.instances.push_back(instance_record(instance, mesh, strings));
     sources.push_back(&instance);
-    for (std::uint32_t b = 0; b < pack.meshes[mesh].batch_count; ++b) {
+    for (uint32_t b = 0; b < pack.meshes[mesh].batch_count; ++b) {
       pack.batch_instances.push_back({.batch = pack.meshes[mesh].first_batch + b, .instance = number});
     }
   }
-  tbb::parallel_for(std::size_t{0}, pack.batch_instances.size(),
-                    [&](std::size_t i) { set_bounds(pack, pack.batch_instances[i]); });
+  tbb::parallel_for(size_t{0}, pack.batch_instances.size(),
+                    [&](size_t i) { set_bounds(pack, pack.batch_instances[i]); });
   for (const pack::BatchInstance& record : pack.batch_instances) {
     check_finite(record, sources[record.instance]->where);
   }

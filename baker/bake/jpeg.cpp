@@ -5,28 +5,28 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint8_t end_of_image = 0xD9, first_restart = 0xD0, start_of_image = 0xD8, temporary = 0x01;
+constexpr uint8_t end_of_image = 0xD9, first_restart = 0xD0, start_of_image = 0xD8, temporary = 0x01;
 
 /// Markers without a length of their own.
-bool stands_alone(std::uint8_t marker) {
+bool stands_alone(uint8_t marker) {
   return (marker >= first_restart && marker <= start_of_image) || marker == temporary;
 }
 
 /// Table B.1: SOF0 to SOF15, among which stand three others.
-bool starts_frame(std::uint8_t marker) {
+bool starts_frame(uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-std::size_t u16_at(const std::uint8_t* bytes) {
-  return std::size_t{bytes[0]} << 8 | bytes[1];
+size_t u16_at(const uint8_t* bytes) {
+  return size_t{bytes[0]} << 8 | bytes[1];
 }
 
 /// Where the first marker with a length or the end's stands for which `wanted` holds; the size of `bytes` if none does.
 template <typename Wanted>
-std::size_t find_marker(const std::vector<std::uint8_t>& bytes, Wanted wanted) {
+size_t find_marker(const std::vector<uint8_t>& bytes, Wanted wanted) {
   // Between segments lie the scans' data, in which FF is followed by 00, or by more FF before a marker.
-  for (std::size_t at = 0; at + 1 < bytes.size();) {
-    const std::uint8_t marker = bytes[at + 1];
+  for (size_t at = 0; at + 1 < bytes.size();) {
+    const uint8_t marker = bytes[at + 1];
     if (bytes[at] != 0xFF || marker == 0xFF) {
       ++at;
     } else if (marker == 0 || stands_alone(marker)) {
@@ -44,12 +44,12 @@ std::size_t find_marker(const std::vector<std::uint8_t>& bytes, Wanted wanted) {
 
 }  // namespace
 
-bool is_whole_jpeg(const std::vector<std::uint8_t>& bytes) {
-  return find_marker(bytes, [](std::uint8_t marker) { return marker == end_of_image; }) < bytes.size();
+bool is_whole_jpeg(const std::vector<uint8_t>& bytes) {
+  return find_marker(bytes, [](uint8_t marker) { return marker == end_of_image; }) < bytes.size();
 }
 
-ClaimedSize jpeg_size(const std::vector<std::uint8_t>& bytes) {
-  const std::size_t at = find_marker(bytes, starts_frame);
+ClaimedSize jpeg_size(const std::vector<uint8_t>& bytes) {
+  const size_t at = find_marker(bytes, starts_frame);
   if (bytes.size() - at < 9) return {};
   return {u16_at(&bytes[at + 7]), u16_at(&bytes[at + 5])};  // marker, length, precision, height, width
 }

@@ -10,9 +10,9 @@
 namespace chandelier::baker {
 
 /// Whether the file ends where its image does, and not before.
-bool is_whole_jpeg(const std::vector<std::uint8_t>& bytes);
+bool is_whole_jpeg(const std::vector<uint8_t>& bytes);
 
 /// As its frame header claims it.
-ClaimedSize jpeg_size(const std::vector<std::uint8_t>& bytes);
+ClaimedSize jpeg_size(const std::vector<uint8_t>& bytes);
 
 }  // namespace chandelier::baker

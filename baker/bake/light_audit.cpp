@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <optional>
 
@@ -17,7 +18,7 @@
 namespace chandelier::baker {
 namespace {
 
-using Numbers = std::vector<std::size_t>;  // of lights
+using Numbers = std::vector<size_t>;  // of lights
 
 constexpr double sphere_sr = 4 * 3.14159265358979323846;
 constexpr double exporter_lumens_per_watt = 683;  // what glTF exporters take
@@ -32,13 +33,13 @@ struct Audit {
   Warnings& warnings;
 
   /// The same number in both, as make_lights puts one after the other.
-  const pack::Light& baked(std::size_t light) const { return pack.lights[light]; }
-  const Light& authored(std::size_t light) const { return scene.lights[light]; }
+  const pack::Light& baked(size_t light) const { return pack.lights[light]; }
+  const Light& authored(size_t light) const { return scene.lights[light]; }
 
   void name(const char* count, const std::string& what, const Numbers& lights) {
     if (lights.empty()) return;
     pass.count(count, static_cast<double>(lights.size()));
-    for (const std::size_t i : lights) {
+    for (const size_t i : lights) {
       warnings.add("scene", "lights", what, authored(i).name.empty() ? authored(i).where : authored(i).name);
     }
   }
@@ -71,7 +72,7 @@ std::string default_of(double intensity) {
 void audit_defaults(Audit& audit, const Numbers& placed) {
   if (placed.size() < 2) return;
   const float intensity = audit.baked(placed[0]).intensity;
-  const bool untouched = std::ranges::all_of(placed, [&](std::size_t i) {
+  const bool untouched = std::ranges::all_of(placed, [&](size_t i) {
     const pack::Light& light = audit.baked(i);
     return light.intensity == intensity && light.color == glm::vec3(1) &&
            light.range_source == pack::RangeSource::derived;
@@ -106,7 +107,7 @@ constexpr std::array<Mixup, 5> mixups = {{
 void audit_power(Audit& audit, const Numbers& placed) {
   for (const Mixup& mixup : mixups) {
     Numbers lights;
-    for (const std::size_t i : placed) {
+    for (const size_t i : placed) {
       const double power_w = audit.authored(i).power_w.value_or(0);
       if (power_w <= 0) continue;
       const double lumens = sphere_sr * audit.baked(i).intensity;
@@ -125,15 +126,15 @@ std::optional<double> illuminance_lx(const pack::Contents& pack, const pack::Lig
     if (distance <= light.range_m) distances.push_back(distance);
   }
   if (distances.size() < rays / 2) return std::nullopt;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  const auto middle = distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
   return brightest_cd(light) / (*middle * *middle);
 }
 
 /// Nothing that is more than a lamp away from a light is brighter than in the sun.
 Numbers brighter_than_sunlight(const Audit& audit, const Numbers& placed) {
-  std::vector<std::uint8_t> found(placed.size(), 0);
-  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
+  std::vector<uint8_t> found(placed.size(), 0);
+  tbb::parallel_for(size_t{0}, placed.size(), [&](size_t i) {
     const pack::Light& light = audit.baked(placed[i]);
     if (brightest_cd(light) < sunlight_lx * fixture_m * fixture_m) return;
     const std::optional<double> lux = illuminance_lx(audit.pack, light);
@@ -141,13 +142,13 @@ Numbers brighter_than_sunlight(const Audit& audit, const Numbers& placed) {
     found[i] = lux && *lux > sunlight_lx && brightest_cd(light) / *lux > fixture_m * fixture_m;
   });
   Numbers out;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
+  for (size_t i = 0; i < placed.size(); ++i) {
     if (found[i]) out.push_back(placed[i]);
   }
   return out;
 }
 
-double median_cd(const Audit& audit, std::span<const std::size_t> sorted) {
+double median_cd(const Audit& audit, std::span<const size_t> sorted) {
   return brightest_cd(audit.baked(sorted[sorted.size() / 2]));
 }
 
@@ -155,11 +156,11 @@ double median_cd(const Audit& audit, std::span<const std::size_t> sorted) {
 /// as the others: some of a scene's lights went another way through the units than the rest.
 Numbers strong_minority(const Audit& audit, const Numbers& placed) {
   Numbers sorted = placed;
-  const auto strength = [&](std::size_t i) { return brightest_cd(audit.baked(i)); };
+  const auto strength = [&](size_t i) { return brightest_cd(audit.baked(i)); };
   std::ranges::stable_sort(sorted, {}, strength);
-  std::size_t first = 0;
+  size_t first = 0;
   double widest = 50;
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
+  for (size_t i = 1; i < sorted.size(); ++i) {
     const double gap = strength(sorted[i]) / strength(sorted[i - 1]);
     if (gap > widest) widest = gap, first = i;
   }
@@ -167,7 +168,7 @@ Numbers strong_minority(const Audit& audit, const Numbers& placed) {
   const std::span all(sorted);
   const double ratio = median_cd(audit, all.subspan(first)) / median_cd(audit, all.first(first));
   if (ratio < exporter_lumens_per_watt / 2 || ratio > exporter_lumens_per_watt * 2) return {};
-  return {sorted.begin() + static_cast<std::ptrdiff_t>(first), sorted.end()};
+  return {sorted.begin() + static_cast<ptrdiff_t>(first), sorted.end()};
 }
 
 /// Of the strong minority, those that also light what is around them 100 times as much as the others do: not
@@ -175,9 +176,9 @@ Numbers strong_minority(const Audit& audit, const Numbers& placed) {
 Numbers units_apart(const Audit& audit, const Numbers& placed) {
   const Numbers strong = strong_minority(audit, placed);
   if (strong.empty()) return {};
-  const auto is_strong = [&](std::size_t i) { return std::ranges::find(strong, i) != strong.end(); };
+  const auto is_strong = [&](size_t i) { return std::ranges::find(strong, i) != strong.end(); };
   std::vector<double> usual_lx;
-  for (std::size_t k = 0; k < placed.size() && usual_lx.size() < 64; ++k) {
+  for (size_t k = 0; k < placed.size() && usual_lx.size() < 64; ++k) {
     const std::optional<double> lux =
         is_strong(placed[k]) ? std::nullopt : illuminance_lx(audit.pack, audit.baked(placed[k]));
     if (lux) usual_lx.push_back(*lux);
@@ -185,7 +186,7 @@ Numbers units_apart(const Audit& audit, const Numbers& placed) {
   if (usual_lx.empty()) return {};
   std::ranges::sort(usual_lx);
   Numbers out;
-  for (const std::size_t i : strong) {
+  for (const size_t i : strong) {
     const std::optional<double> lux = illuminance_lx(audit.pack, audit.baked(i));
     if (lux && *lux > 100 * usual_lx[usual_lx.size() / 2]) out.push_back(i);
   }
@@ -198,7 +199,7 @@ void audit_units(Audit& audit, const Numbers& placed) {
   const Numbers apart = units_apart(audit, placed);
   audit.name("units_apart", "about 683 times as bright as the other lights: were watts turned to lumens twice?", apart);
   Numbers blinding = brighter_than_sunlight(audit, placed);
-  std::erase_if(blinding, [&](std::size_t i) { return std::ranges::find(apart, i) != apart.end(); });
+  std::erase_if(blinding, [&](size_t i) { return std::ranges::find(apart, i) != apart.end(); });
   audit.name("brighter_than_sunlight",
              "brighter than direct sunlight on most of what is around them: were watts turned to lumens twice?",
              blinding);
@@ -213,7 +214,7 @@ bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
   const glm::dvec3 from(light.position_ws);
   const std::vector<glm::dvec3> ways = directions_of(light, rays);
   int inside = 0, kept = 0;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
+  for (size_t i = 0; i < ways.size(); ++i) {
     const RayHit hit = cast_ray(pack, from, ways[i], pack::shadow_near_m(light));
     if (hit.shells_around > 0) ++inside;
     if (i == 1 && inside == 0) return false;  // two rays agree that it stands free
@@ -228,7 +229,7 @@ bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
 void audit_touching(Audit& audit, const Numbers& placed) {
   constexpr double least_m = pack::least_shadow_near_m / pack::shadow_near_per_distance;
   Numbers touching;
-  for (const std::size_t i : placed) {
+  for (const size_t i : placed) {
     pack::Light close = audit.baked(i);
     if (close.shadowless || close.dynamic || !(close.nearest_caster_m < least_m)) continue;
     close.range_m = static_cast<float>(least_m);
@@ -244,9 +245,9 @@ void audit_touching(Audit& audit, const Numbers& placed) {
 void audit_places(Audit& audit, const Numbers& placed) {
   if (audit.pack.batch_instances.empty()) return;  // a rig without its scene
   const bool any_closed = std::ranges::any_of(audit.pack.batches, [](const pack::Batch& b) { return b.closed == 1; });
-  enum : std::uint8_t { fine, swallowed, alone };
-  std::vector<std::uint8_t> found(placed.size(), fine);
-  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
+  enum : uint8_t { fine, swallowed, alone };
+  std::vector<uint8_t> found(placed.size(), fine);
+  tbb::parallel_for(size_t{0}, placed.size(), [&](size_t i) {
     const pack::Light& light = audit.baked(placed[i]);
     if (light.dynamic) return;  // it is there only now
     if (!reaches_anything(audit.pack, light)) {
@@ -256,7 +257,7 @@ void audit_places(Audit& audit, const Numbers& placed) {
     }
   });
   Numbers inside, nothing;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
+  for (size_t i = 0; i < placed.size(); ++i) {
     if (found[i] == swallowed) inside.push_back(placed[i]);
     if (found[i] == alone) nothing.push_back(placed[i]);
   }
@@ -269,13 +270,13 @@ void audit_places(Audit& audit, const Numbers& placed) {
 void audit_groups(Audit& audit) {
   std::vector<std::array<bool, 2>> holds(audit.pack.lights.size() + 1);  // of each group: placed, directional lights
   Numbers opted_out, mixed, shadowless;
-  for (std::size_t i = 0; i < audit.pack.lights.size(); ++i) {
+  for (size_t i = 0; i < audit.pack.lights.size(); ++i) {
     const pack::Light& light = audit.baked(i);
     holds[light.group][light.type == pack::LightType::directional] = true;
     if (light.group != 0 && light.unclustered) opted_out.push_back(i);
     if (light.group != 0 && light.shadowless) shadowless.push_back(i);
   }
-  for (std::size_t i = 0; i < audit.pack.lights.size(); ++i) {
+  for (size_t i = 0; i < audit.pack.lights.size(); ++i) {
     const pack::Light& light = audit.baked(i);
     const bool both = holds[light.group][0] && holds[light.group][1];
     if (light.group != 0 && both && light.type == pack::LightType::directional) mixed.push_back(i);
@@ -290,7 +291,7 @@ void audit_groups(Audit& audit) {
 void audit_lights(const Scene& scene, const pack::Contents& pack, PassReport& pass, Warnings& warnings) {
   Audit audit = {scene, pack, pass, warnings};
   Numbers placed;
-  for (std::size_t i = 0; i < pack.lights.size(); ++i) {
+  for (size_t i = 0; i < pack.lights.size(); ++i) {
     if (pack.lights[i].type != pack::LightType::directional) placed.push_back(i);
   }
   audit_defaults(audit, placed);

@@ -16,15 +16,15 @@ namespace chandelier::baker {
 namespace {
 
 constexpr int bin_count = 16;
-constexpr int keys = 4;                  // x, y, z, and the radius's logarithm
-constexpr int most_uneven = 64;          // splits in a row before halving: no tree is deeper than this and log2 n
-constexpr std::size_t parallel = 2048;   // lights that are worth a task
-constexpr std::size_t refine_steps = 8;  // of a node's sphere
+constexpr int keys = 4;             // x, y, z, and the radius's logarithm
+constexpr int most_uneven = 64;     // splits in a row before halving: no tree is deeper than this and log2 n
+constexpr size_t parallel = 2048;   // lights that are worth a task
+constexpr size_t refine_steps = 8;  // of a node's sphere
 
 struct Item {
   Sphere sphere;
   double log_radius;
-  std::uint32_t light;
+  uint32_t light;
 };
 using Items = std::span<Item>;
 
@@ -36,7 +36,7 @@ double key_of(const Item& item, int key) {
 struct Extent {
   glm::dvec3 low{INFINITY}, high{-INFINITY};
   double radius = 0;
-  std::size_t count = 0;
+  size_t count = 0;
 
   void add(const Item& item) {
     low = glm::min(low, item.sphere.center);
@@ -76,13 +76,13 @@ Split split_by(int key, Items items) {
   Split split{.key = key, .low = least, .scale = bin_count / (most - least)};
   if (!std::isfinite(split.scale)) return split;
   std::array<Extent, bin_count> bins, above;
-  for (const Item& item : items) bins[static_cast<std::size_t>(split.bin_of(item))].add(item);
-  for (std::size_t i = bin_count - 1; i > 0; --i) {
+  for (const Item& item : items) bins[static_cast<size_t>(split.bin_of(item))].add(item);
+  for (size_t i = bin_count - 1; i > 0; --i) {
     above[i - 1] = above[i];
     above[i - 1].add(bins[i]);
   }
   Extent below;
-  for (std::size_t i = 0; i + 1 < bin_count; ++i) {
+  for (size_t i = 0; i + 1 < bin_count; ++i) {
     below.add(bins[i]);
     if (below.count == 0 || above[i].count == 0) continue;
     const double cost = below.cost() + above[i].cost();
@@ -92,7 +92,7 @@ Split split_by(int key, Items items) {
 }
 
 /// Puts the items of the first half in front, and returns how many they are. Stable, so that results repeat.
-std::size_t partition(Items items, int depth) {
+size_t partition(Items items, int depth) {
   Split best;
   for (int key = 0; key < keys && depth < most_uneven; ++key) {
     const Split split = split_by(key, items);
@@ -100,7 +100,7 @@ std::size_t partition(Items items, int depth) {
   }
   if (!std::isfinite(best.cost)) return items.size() / 2;
   const auto is_first = [&](const Item& item) { return best.bin_of(item) <= best.bin; };
-  return static_cast<std::size_t>(std::stable_partition(items.begin(), items.end(), is_first) - items.begin());
+  return static_cast<size_t>(std::stable_partition(items.begin(), items.end(), is_first) - items.begin());
 }
 
 double radius_around(const glm::dvec3& center, Items items, const Item*& farthest) {
@@ -117,7 +117,7 @@ double radius_around(const glm::dvec3& center, Items items, const Item*& farthes
 Sphere sphere_around(Items items, const Sphere& guess) {
   Sphere best = guess;
   glm::dvec3 center = guess.center;
-  for (std::size_t step = 1; step <= refine_steps; ++step) {
+  for (size_t step = 1; step <= refine_steps; ++step) {
     const Item* farthest = nullptr;
     const double radius = radius_around(center, items, farthest);
     if (radius < best.radius) best = {center, radius};
@@ -129,19 +129,19 @@ Sphere sphere_around(Items items, const Sphere& guess) {
   return best;
 }
 
-pack::LightBvhNode node_of(const Sphere& sphere, std::size_t miss, std::uint32_t light) {
+pack::LightBvhNode node_of(const Sphere& sphere, size_t miss, uint32_t light) {
   const FloatSphere rounded = rounded_outwards(sphere);
-  return {rounded.center, rounded.radius, static_cast<std::uint32_t>(miss), light};
+  return {rounded.center, rounded.radius, static_cast<uint32_t>(miss), light};
 }
 
 /// Fills 2 · items − 1 nodes from `first` on; returns the root's sphere.
-Sphere build(Items items, std::size_t first, int depth, std::span<pack::LightBvhNode> nodes) {
-  const std::size_t end = first + 2 * items.size() - 1;
+Sphere build(Items items, size_t first, int depth, std::span<pack::LightBvhNode> nodes) {
+  const size_t end = first + 2 * items.size() - 1;
   if (items.size() == 1) {
     nodes[first] = node_of(items[0].sphere, end, items[0].light);
     return items[0].sphere;
   }
-  const std::size_t half = partition(items, depth);
+  const size_t half = partition(items, depth);
   Sphere left, right;
   const auto build_left = [&] { left = build(items.first(half), first + 1, depth + 1, nodes); };
   const auto build_right = [&] { right = build(items.subspan(half), first + 2 * half, depth + 1, nodes); };
@@ -160,12 +160,12 @@ Sphere build(Items items, std::size_t first, int depth, std::span<pack::LightBvh
 
 std::vector<pack::LightBvhNode> build_light_bvh(std::span<const pack::Light> lights) {
   std::vector<Item> items;
-  for (std::size_t i = 0; i < lights.size(); ++i) {
+  for (size_t i = 0; i < lights.size(); ++i) {
     if (lights[i].type == pack::LightType::directional) continue;
     const double radius = lights[i].bounds_radius_m;
     items.push_back({{glm::dvec3(lights[i].bounds_center_ws), radius},
                      std::log(std::max(radius, 1e-30)),
-                     static_cast<std::uint32_t>(i)});
+                     static_cast<uint32_t>(i)});
   }
   if (items.empty()) return {};
   std::vector<pack::LightBvhNode> nodes(2 * items.size() - 1);

@@ -25,14 +25,14 @@ bool visit_batches(const pack::Contents& pack, Meets meets, Visit visit) {
       return pack.instances[draw.instance].dynamic == 0 && test(draw);
     });
   }
-  for (std::size_t i = 0; i < pack.batch_bvh.size();) {
+  for (size_t i = 0; i < pack.batch_bvh.size();) {
     const pack::BvhNode& node = pack.batch_bvh[i];
     if (!meets(node.bounds_min, node.bounds_max)) {
       i = node.skip;
       continue;
     }
-    const std::uint32_t first = node.leaf / 16, count = node.leaf == pack::none ? 0 : node.leaf % 16;
-    for (std::uint32_t item = first; item < first + count; ++item) {
+    const uint32_t first = node.leaf / 16, count = node.leaf == pack::none ? 0 : node.leaf % 16;
+    for (uint32_t item = first; item < first + count; ++item) {
       if (test(pack.batch_instances[pack.batch_bvh_items[item].batch_instance])) return true;
     }
     ++i;
@@ -43,9 +43,9 @@ bool visit_batches(const pack::Contents& pack, Meets meets, Visit visit) {
 using pack::distance_to_triangle;
 using pack::Triangle;
 
-Triangle triangle_ls(const pack::Contents& pack, std::uint32_t first_index) {
+Triangle triangle_ls(const pack::Contents& pack, uint32_t first_index) {
   Triangle out;
-  for (std::uint32_t i = 0; i < 3; ++i) {
+  for (uint32_t i = 0; i < 3; ++i) {
     out[i] = glm::dvec3(pack.positions[pack.indices[first_index + i].vertex].position_ls);
   }
   return out;
@@ -127,7 +127,7 @@ void cast_at_batch(const pack::Contents& pack, const pack::BatchInstance& draw, 
   const glm::dmat4 world = world_from_local(pack.instances[draw.instance]), local = glm::inverse(world);
   const Ray ray_ls = {glm::dvec3(local * glm::dvec4(ray.from, 1)), glm::dvec3(local * glm::dvec4(ray.way, 0))};
   const bool mirrored = glm::determinant(glm::dmat3(world)) < 0;
-  for (std::uint32_t i = 0; i < batch.index_count; i += 3) {
+  for (uint32_t i = 0; i < batch.index_count; i += 3) {
     bool leaves_ls = false;
     const double distance = meet_triangle(ray_ls, triangle_ls(pack, batch.first_index + i), leaves_ls);
     if (!std::isfinite(distance)) continue;
@@ -179,7 +179,7 @@ double farthest_of_box(const glm::dvec3& point, const glm::vec3& low, const glm:
 /// Calls visit(batch instance) for those that cast a shadow, moving ones where they rest, and whose boxes are not
 /// farther away than `nearest`, which it may lessen.
 template <typename Visit>
-void visit_casters_near(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, const glm::dvec3& point,
+void visit_casters_near(const pack::Contents& pack, const std::vector<uint32_t>& moving, const glm::dvec3& point,
                         const double& nearest, Visit visit) {
   const auto meets = [&](const glm::vec3& low, const glm::vec3& high) {
     return is_near_box(point, nearest, low, high);
@@ -189,7 +189,7 @@ void visit_casters_near(const pack::Contents& pack, const std::vector<std::uint3
     return false;
   };
   visit_batches(pack, meets, visit_caster);
-  for (const std::uint32_t number : moving) {
+  for (const uint32_t number : moving) {
     const pack::BatchInstance& draw = pack.batch_instances[number];
     if (meets(draw.bounds_min_ws, draw.bounds_max_ws)) visit_caster(draw);
   }
@@ -197,15 +197,15 @@ void visit_casters_near(const pack::Contents& pack, const std::vector<std::uint3
 
 }  // namespace
 
-std::vector<std::uint32_t> moving_batch_instances(const pack::Contents& pack) {
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t i = 0; i < pack.batch_instances.size(); ++i) {
+std::vector<uint32_t> moving_batch_instances(const pack::Contents& pack) {
+  std::vector<uint32_t> out;
+  for (uint32_t i = 0; i < pack.batch_instances.size(); ++i) {
     if (!is_static(pack, pack.batch_instances[i])) out.push_back(i);
   }
   return out;
 }
 
-double nearest_caster_m(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, const glm::dvec3& at,
+double nearest_caster_m(const pack::Contents& pack, const std::vector<uint32_t>& moving, const glm::dvec3& at,
                         double most_m) {
   double nearest = most_m;
   visit_casters_near(pack, moving, at, nearest,
@@ -215,7 +215,7 @@ double nearest_caster_m(const pack::Contents& pack, const std::vector<std::uint3
   visit_casters_near(pack, moving, at, nearest, [&](const pack::BatchInstance& draw) {
     const pack::Batch& batch = pack.batches[draw.batch];
     const glm::dmat4 world = world_from_local(pack.instances[draw.instance]);
-    for (std::uint32_t i = 0; i < batch.index_count; i += 3) {
+    for (uint32_t i = 0; i < batch.index_count; i += 3) {
       Triangle triangle = triangle_ls(pack, batch.first_index + i);
       for (glm::dvec3& corner : triangle) corner = glm::dvec3(world * glm::dvec4(corner, 1)) - at;
       nearest = std::min(nearest, distance_to_triangle(triangle));
@@ -233,7 +233,7 @@ bool reaches_anything(const pack::Contents& pack, const pack::Light& light) {
   const auto visit = [&](const pack::BatchInstance& draw) {
     const pack::Batch& batch = pack.batches[draw.batch];
     const glm::dmat4 world = world_from_local(pack.instances[draw.instance]);
-    for (std::uint32_t i = 0; i < batch.index_count; i += 3) {
+    for (uint32_t i = 0; i < batch.index_count; i += 3) {
       Triangle triangle = triangle_ls(pack, batch.first_index + i);
       for (glm::dvec3& corner : triangle) corner = glm::dvec3(world * glm::dvec4(corner, 1)) - at;
       if (distance_to_triangle(triangle) <= range && cosine_to_triangle(triangle, axis) >= cosine) return true;

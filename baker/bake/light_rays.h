@@ -2,6 +2,7 @@
 // Finds what is around a light: rays against a pack's static triangles, and whether any triangle is within its range.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -25,11 +26,11 @@ RayHit cast_ray(const pack::Contents& pack, const glm::dvec3& from, const glm::d
 std::vector<glm::dvec3> directions_of(const pack::Light& light, int count);
 
 /// The numbers of those that no hierarchy holds, since they may move.
-std::vector<std::uint32_t> moving_batch_instances(const pack::Contents& pack);
+std::vector<uint32_t> moving_batch_instances(const pack::Contents& pack);
 
 /// How far the nearest triangle is that casts a shadow, wherever its cut-outs are, and where it rests if it moves;
 /// `most_m` where none is nearer. `moving`: moving_batch_instances, so that many lights need them only once.
-double nearest_caster_m(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, const glm::dvec3& at,
+double nearest_caster_m(const pack::Contents& pack, const std::vector<uint32_t>& moving, const glm::dvec3& at,
                         double most_m);
 
 /// Whether a triangle has points within a point or spot light's range and points, maybe others, within its cone. So

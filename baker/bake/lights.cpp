@@ -20,17 +20,17 @@ namespace {
 /// Numbers from 1, in the order in which the names are met; 0 for no name.
 class Groups {
  public:
-  std::uint32_t number(const std::string& name) {
+  uint32_t number(const std::string& name) {
     if (name.empty()) return 0;
-    return numbers_.try_emplace(name, static_cast<std::uint32_t>(numbers_.size() + 1)).first->second;
+    return numbers_.try_emplace(name, static_cast<uint32_t>(numbers_.size() + 1)).first->second;
   }
 
  private:
-  std::unordered_map<std::string, std::uint32_t> numbers_;
+  std::unordered_map<std::string, uint32_t> numbers_;
 };
 
 /// Rounded down, so that nothing is nearer.
-void measure_nearest(const pack::Contents& pack, const std::vector<std::uint32_t>& moving, pack::Light& light) {
+void measure_nearest(const pack::Contents& pack, const std::vector<uint32_t>& moving, pack::Light& light) {
   if (light.type == pack::LightType::directional) return;
   const double nearest = nearest_caster_m(pack, moving, glm::dvec3(light.position_ws), light.range_m);
   light.nearest_caster_m = static_cast<float>(nearest);
@@ -78,9 +78,8 @@ void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings,
     if (!pack.voxel_grid.empty()) out.voxel = cell_at(pack.voxel_grid[0], out.position_ws);
     pack.lights.push_back(out);
   }
-  const std::vector<std::uint32_t> moving = moving_batch_instances(pack);
-  tbb::parallel_for(std::size_t{0}, pack.lights.size(),
-                    [&](std::size_t i) { measure_nearest(pack, moving, pack.lights[i]); });
+  const std::vector<uint32_t> moving = moving_batch_instances(pack);
+  tbb::parallel_for(size_t{0}, pack.lights.size(), [&](size_t i) { measure_nearest(pack, moving, pack.lights[i]); });
 }
 
 void make_cameras(const Scene& scene, Strings& strings, pack::Contents& pack) {

@@ -19,32 +19,32 @@ namespace {
 
 using Meshes = std::vector<PackedMesh>;
 
-void count(PassReport& pass, const char* what, std::uint64_t value) {
+void count(PassReport& pass, const char* what, uint64_t value) {
   pass.count(what, static_cast<double>(value));
 }
 
 template <typename Member>
-std::uint64_t sum(const Meshes& meshes, Member member) {
-  std::uint64_t total = 0;
+uint64_t sum(const Meshes& meshes, Member member) {
+  uint64_t total = 0;
   for (const PackedMesh& mesh : meshes) {
     for (const PackedPrimitive& primitive : mesh.primitives) total += member(primitive);
   }
   return total;
 }
 
-std::uint64_t vertex_count(const Meshes& meshes) {
+uint64_t vertex_count(const Meshes& meshes) {
   return sum(meshes, [](const PackedPrimitive& primitive) { return primitive.vertices.size(); });
 }
 
-std::uint64_t triangle_count(const Meshes& meshes) {
+uint64_t triangle_count(const Meshes& meshes) {
   return sum(meshes, [](const PackedPrimitive& primitive) { return primitive.triangle_count(); });
 }
 
 void weld_all(Meshes& meshes, PassReport& pass) {
-  const std::uint64_t before = vertex_count(meshes);
-  tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t m) {
+  const uint64_t before = vertex_count(meshes);
+  tbb::parallel_for(size_t{0}, meshes.size(), [&](size_t m) {
     std::vector<PackedPrimitive>& primitives = meshes[m].primitives;
-    tbb::parallel_for(std::size_t{0}, primitives.size(), [&](std::size_t p) { weld(primitives[p]); });
+    tbb::parallel_for(size_t{0}, primitives.size(), [&](size_t p) { weld(primitives[p]); });
   });
   count(pass, "vertices", vertex_count(meshes));
   count(pass, "welded", before - vertex_count(meshes));
@@ -59,8 +59,8 @@ bool is_rigid(const PackedMesh& mesh) {
 
 void clean_all(Meshes& meshes, const std::vector<Material>& materials, PassReport& pass) {
   std::vector<CleanCounts> counts(meshes.size());
-  tbb::parallel_for(std::size_t{0}, meshes.size(),
-                    [&](std::size_t m) { counts[m] = clean(meshes[m], materials, is_rigid(meshes[m])); });
+  tbb::parallel_for(size_t{0}, meshes.size(),
+                    [&](size_t m) { counts[m] = clean(meshes[m], materials, is_rigid(meshes[m])); });
   CleanCounts all;
   for (const CleanCounts& each : counts) {
     all.degenerate += each.degenerate;
@@ -73,8 +73,8 @@ void clean_all(Meshes& meshes, const std::vector<Material>& materials, PassRepor
 
 void find_all_shells(Meshes& meshes, const std::vector<Material>& materials, PassReport& pass) {
   std::vector<ShellCounts> counts(meshes.size());
-  tbb::parallel_for(std::size_t{0}, meshes.size(),
-                    [&](std::size_t m) { counts[m] = find_shells(meshes[m], materials, is_rigid(meshes[m])); });
+  tbb::parallel_for(size_t{0}, meshes.size(),
+                    [&](size_t m) { counts[m] = find_shells(meshes[m], materials, is_rigid(meshes[m])); });
   ShellCounts all;
   for (const ShellCounts& each : counts) {
     all.shells += each.shells;
@@ -87,7 +87,7 @@ void find_all_shells(Meshes& meshes, const std::vector<Material>& materials, Pas
 }
 
 void report_batches(const pack::Contents& pack, PassReport& pass) {
-  std::uint64_t closed = 0, cones = 0;
+  uint64_t closed = 0, cones = 0;
   for (const pack::Batch& batch : pack.batches) {
     closed += batch.closed;
     cones += batch.cone_cutoff < 1;

@@ -16,20 +16,20 @@ enum class ImageUse {
 };
 
 struct Texels {
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  std::vector<std::uint8_t> rgba;  // rows from the top
+  uint32_t width = 0;
+  uint32_t height = 0;
+  std::vector<uint8_t> rgba;  // rows from the top
 };
 
 /// sRGB's curve: of an 8-bit value, and the nearest 8-bit value of a linear one (0 to 1, clamped).
-float linear_of_srgb(std::uint8_t code);
-std::uint8_t srgb_of_linear(float value);
+float linear_of_srgb(uint8_t code);
+uint8_t srgb_of_linear(float value);
 
-std::uint32_t mip_level_count(std::uint32_t width, std::uint32_t height);
+uint32_t mip_level_count(uint32_t width, uint32_t height);
 
 /// All levels down to 1×1, largest first, level n max(1, size >> n) wide and high; those above `max_size` are left out
 /// (0: none). With masked_color, `alpha_cutoff` (0 to 1) is the least alpha that is seen. Same levels on any number of
 /// threads.
-std::vector<Texels> mip_chain(Texels&& top, ImageUse use, float alpha_cutoff = 0, std::uint32_t max_size = 0);
+std::vector<Texels> mip_chain(Texels&& top, ImageUse use, float alpha_cutoff = 0, uint32_t max_size = 0);
 
 }  // namespace chandelier::baker

@@ -20,7 +20,7 @@ struct MeshTraits : OpenMesh::DefaultTraits {
 using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<MeshTraits>;
 using Halfedge = OpenMesh::HalfedgeHandle;
 
-glm::dvec3 corner(const Primitive& primitive, std::size_t i) {
+glm::dvec3 corner(const Primitive& primitive, size_t i) {
   return primitive.vertices[primitive.indices[i]].position_ls;
 }
 
@@ -30,14 +30,14 @@ glm::dvec3 unit_or(const glm::dvec3& vector, const glm::dvec3& otherwise) {
 }
 
 /// Unit length, or zero for a triangle without an area.
-glm::dvec3 flat_normal(const Primitive& primitive, std::size_t triangle) {
+glm::dvec3 flat_normal(const Primitive& primitive, size_t triangle) {
   const glm::dvec3 a = corner(primitive, 3 * triangle);
   return unit_or(glm::cross(corner(primitive, 3 * triangle + 1) - a, corner(primitive, 3 * triangle + 2) - a),
                  glm::dvec3(0));
 }
 
 /// The angle of a triangle at one of its corners.
-double angle_at(const Primitive& primitive, std::size_t triangle, std::size_t c) {
+double angle_at(const Primitive& primitive, size_t triangle, size_t c) {
   const glm::dvec3 at = corner(primitive, 3 * triangle + c);
   const glm::dvec3 b = corner(primitive, 3 * triangle + (c + 1) % 3) - at;
   const glm::dvec3 d = corner(primitive, 3 * triangle + (c + 2) % 3) - at;
@@ -51,17 +51,17 @@ HalfedgeMesh halfedge_mesh(const Primitive& primitive) {
   const std::vector<Vertex>& vertices = primitive.vertices;
   const auto place = first_equal(
       vertices.size(),
-      [&](std::size_t i) {
+      [&](size_t i) {
         const glm::vec3 p = vertices[i].position_ls + 0.0f;  // -0 is 0
-        std::uint32_t words[3];
+        uint32_t words[3];
         std::memcpy(words, &p, sizeof(words));
         return hash_words(words, 3);
       },
-      [&](std::size_t i, std::size_t j) { return vertices[i].position_ls == vertices[j].position_ls; });
+      [&](size_t i, size_t j) { return vertices[i].position_ls == vertices[j].position_ls; });
   HalfedgeMesh mesh;
   mesh.reserve(vertices.size(), primitive.indices.size() / 2, primitive.indices.size() / 3);
-  for (std::size_t i = 0; i < vertices.size(); ++i) mesh.add_vertex({});
-  for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+  for (size_t i = 0; i < vertices.size(); ++i) mesh.add_vertex({});
+  for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
     const OpenMesh::VertexHandle corners[] = {
         OpenMesh::VertexHandle(static_cast<int>(place[primitive.indices[i]])),
         OpenMesh::VertexHandle(static_cast<int>(place[primitive.indices[i + 1]])),
@@ -78,15 +78,15 @@ class CreaseNormals {
  public:
   CreaseNormals(const Primitive& primitive, double smooth_angle_rad)
       : primitive_(primitive), mesh_(halfedge_mesh(primitive)), least_cosine_(std::cos(smooth_angle_rad)) {
-    const std::size_t triangles = primitive.indices.size() / 3;
+    const size_t triangles = primitive.indices.size() / 3;
     faces_.reserve(triangles);
-    for (std::size_t t = 0; t < triangles; ++t) faces_.push_back(flat_normal(primitive, t));
+    for (size_t t = 0; t < triangles; ++t) faces_.push_back(flat_normal(primitive, t));
     normals.assign(3 * triangles, glm::vec3(0));
     std::vector<bool> done(mesh_.n_halfedges(), false);
     for (const Halfedge h : mesh_.halfedges()) {
-      if (mesh_.is_boundary(h) || done[static_cast<std::size_t>(h.idx())]) continue;
+      if (mesh_.is_boundary(h) || done[static_cast<size_t>(h.idx())]) continue;
       collect_sector(h);
-      for (const Halfedge each : sector_) done[static_cast<std::size_t>(each.idx())] = true;
+      for (const Halfedge each : sector_) done[static_cast<size_t>(each.idx())] = true;
       smooth_sector();
     }
   }
@@ -94,7 +94,7 @@ class CreaseNormals {
   std::vector<glm::vec3> normals;
 
  private:
-  std::size_t face(Halfedge h) const { return static_cast<std::size_t>(mesh_.face_handle(h).idx()); }
+  size_t face(Halfedge h) const { return static_cast<size_t>(mesh_.face_handle(h).idx()); }
 
   bool is_crease(Halfedge h) const {
     const Halfedge across = mesh_.opposite_halfedge_handle(h);
@@ -120,7 +120,7 @@ class CreaseNormals {
   }
 
   /// A face's first halfedge ends at its second corner: OpenMesh's add_face begins with the edge 0→1.
-  std::size_t corner_of(Halfedge h) const {
+  size_t corner_of(Halfedge h) const {
     const Halfedge last = mesh_.halfedge_handle(mesh_.face_handle(h));  // 2→0
     return h == last ? 0 : h == mesh_.next_halfedge_handle(last) ? 1 : 2;
   }
@@ -145,17 +145,17 @@ class CreaseNormals {
 template <typename NormalOf>
 void set_normals(Primitive& primitive, NormalOf normal_of) {
   constexpr int look_ahead = 8;
-  std::vector<std::uint32_t> newest(primitive.vertices.size(), no_index), older;
+  std::vector<uint32_t> newest(primitive.vertices.size(), no_index), older;
   std::vector<Vertex> vertices;
   std::vector<SkinVertex> skin_vertices;
-  for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
-    const std::uint32_t from = primitive.indices[i];
+  for (size_t i = 0; i < primitive.indices.size(); ++i) {
+    const uint32_t from = primitive.indices[i];
     const glm::vec3 normal = normal_of(i);
-    std::uint32_t copy = newest[from];
+    uint32_t copy = newest[from];
     for (int look = 0; look < look_ahead && copy != no_index && vertices[copy].normal_ls != normal; ++look)
       copy = older[copy];
     if (copy == no_index || vertices[copy].normal_ls != normal) {
-      copy = static_cast<std::uint32_t>(vertices.size());
+      copy = static_cast<uint32_t>(vertices.size());
       older.push_back(newest[from]);
       newest[from] = copy;
       vertices.push_back(primitive.vertices[from]);
@@ -177,25 +177,25 @@ glm::vec3 or_up(const glm::vec3& normal) {
 void make_normals(Primitive& primitive, float smooth_angle_rad) {
   if (smooth_angle_rad > 0) {
     const CreaseNormals creases(primitive, smooth_angle_rad);
-    set_normals(primitive, [&](std::size_t i) { return or_up(creases.normals[i]); });
+    set_normals(primitive, [&](size_t i) { return or_up(creases.normals[i]); });
     return;
   }
   // The corners of a triangle are read before they are replaced.
   glm::vec3 normal(0);
-  set_normals(primitive, [&](std::size_t i) {
+  set_normals(primitive, [&](size_t i) {
     if (i % 3 == 0) normal = or_up(glm::vec3(flat_normal(primitive, i / 3)));
     return normal;
   });
 }
 
-std::size_t make_normals(Scene& scene, float smooth_angle_rad) {
+size_t make_normals(Scene& scene, float smooth_angle_rad) {
   std::vector<Primitive*> without;
   for (Mesh& mesh : scene.meshes) {
     for (Primitive& primitive : mesh.primitives) {
       if (primitive.needs_normals) without.push_back(&primitive);
     }
   }
-  tbb::parallel_for(std::size_t{0}, without.size(), [&](std::size_t i) {
+  tbb::parallel_for(size_t{0}, without.size(), [&](size_t i) {
     make_normals(*without[i], smooth_angle_rad);
     without[i]->needs_normals = false;
   });

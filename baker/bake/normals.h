@@ -2,6 +2,8 @@
 // Pass: makes normals where the file has none.
 #pragma once
 
+#include <cstddef>
+
 #include "../scene.h"
 
 namespace chandelier::baker {
@@ -12,6 +14,6 @@ namespace chandelier::baker {
 void make_normals(Primitive& primitive, float smooth_angle_rad);
 
 /// The same for each primitive that needs it; returns how many did.
-std::size_t make_normals(Scene& scene, float smooth_angle_rad);
+size_t make_normals(Scene& scene, float smooth_angle_rad);
 
 }  // namespace chandelier::baker

@@ -21,11 +21,11 @@ static_assert(sizeof(PackedVertex) == sizeof(pack::Position) + sizeof(pack::Vert
 struct PackedPrimitive {
   std::vector<PackedVertex> vertices;
   std::vector<SkinVertex> skin_vertices;  // one per vertex, or none
-  std::vector<std::uint32_t> indices;     // a triangle list
+  std::vector<uint32_t> indices;          // a triangle list
   std::vector<bool> closed;               // per triangle: it may be culled by facing
-  std::uint32_t material = 0;
+  uint32_t material = 0;
 
-  std::size_t triangle_count() const { return indices.size() / 3; }
+  size_t triangle_count() const { return indices.size() / 3; }
 };
 
 struct PackedMesh {
@@ -33,12 +33,12 @@ struct PackedMesh {
 };
 
 /// The corner c of a triangle.
-inline const glm::vec3& corner_of(const PackedPrimitive& primitive, std::size_t triangle, std::size_t c) {
+inline const glm::vec3& corner_of(const PackedPrimitive& primitive, size_t triangle, size_t c) {
   return primitive.vertices[primitive.indices[3 * triangle + c]].position_ls;
 }
 
 /// Twice the area along the normal. Exact, and so exactly zero where it is, for corners on a grid of 2^25 steps.
-inline glm::dvec3 area_vector(const PackedPrimitive& primitive, std::size_t triangle) {
+inline glm::dvec3 area_vector(const PackedPrimitive& primitive, size_t triangle) {
   const glm::dvec3 a = corner_of(primitive, triangle, 0);
   return glm::cross(glm::dvec3(corner_of(primitive, triangle, 1)) - a,
                     glm::dvec3(corner_of(primitive, triangle, 2)) - a);

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <new>
 
 #include "../error.h"
@@ -14,19 +15,19 @@
 namespace chandelier::baker {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = std::vector<uint8_t>;
 
-constexpr std::size_t signature_bytes = 8;
-constexpr std::uint8_t grey_type = 0, rgb_type = 2, palette_type = 3, grey_alpha_type = 4, rgba_type = 6;
+constexpr size_t signature_bytes = 8;
+constexpr uint8_t grey_type = 0, rgb_type = 2, palette_type = 3, grey_alpha_type = 4, rgba_type = 6;
 
-std::uint32_t u32_at(const std::uint8_t* bytes) {
-  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
+uint32_t u32_at(const uint8_t* bytes) {
+  return uint32_t{bytes[0]} << 24 | uint32_t{bytes[1]} << 16 | uint32_t{bytes[2]} << 8 | bytes[3];
 }
 
 struct Chunk {
   std::string type;
-  const std::uint8_t* data;
-  std::size_t size;
+  const uint8_t* data;
+  size_t size;
 };
 
 /// Keeps the first message only.
@@ -35,8 +36,8 @@ void note(std::string& damage, const std::string& what) {
 }
 
 struct Header {
-  std::uint32_t width, height;
-  std::uint8_t depth, color, interlaced;
+  uint32_t width, height;
+  uint8_t depth, color, interlaced;
 };
 
 /// 5.4: others may be left out.
@@ -56,9 +57,9 @@ std::vector<Chunk> split_chunks(const Bytes& bytes, const std::string& where, st
     return out;
   };
   if (bytes.size() < signature_bytes) return cut_short();
-  for (std::size_t at = signature_bytes;;) {
+  for (size_t at = signature_bytes;;) {
     if (bytes.size() - at < 8) return cut_short();
-    const std::size_t size = u32_at(&bytes[at]), left = bytes.size() - at - 8;
+    const size_t size = u32_at(&bytes[at]), left = bytes.size() - at - 8;
     const std::string type(&bytes[at + 4], &bytes[at + 4] + 4);
     if (left < 4 || left - 4 < size) {
       if (type == "IDAT") out.push_back({type, &bytes[at] + 8, std::min(left, size)});
@@ -75,16 +76,16 @@ std::vector<Chunk> split_chunks(const Bytes& bytes, const std::string& where, st
   }
 }
 
-std::string fault(const std::string& what, std::uint64_t value) {
+std::string fault(const std::string& what, uint64_t value) {
   return "PNG is damaged: " + what + " (" + std::to_string(value) + ")";
 }
 
-[[noreturn]] void damaged(const std::string& where, const std::string& what, std::uint64_t value) {
+[[noreturn]] void damaged(const std::string& where, const std::string& what, uint64_t value) {
   fail(where, fault(what, value));
 }
 
 /// Table 11.1: the bit depths of a colour type.
-bool allows(std::uint8_t color, std::uint8_t depth) {
+bool allows(uint8_t color, uint8_t depth) {
   if (color == grey_type) return depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16;
   if (color == palette_type) return depth == 1 || depth == 2 || depth == 4 || depth == 8;
   return (color == rgb_type || color == grey_alpha_type || color == rgba_type) && (depth == 8 || depth == 16);
@@ -92,7 +93,7 @@ bool allows(std::uint8_t color, std::uint8_t depth) {
 
 Header read_header(const Chunk& chunk, const std::string& where) {
   if (chunk.type != "IHDR" || chunk.size != 13) damaged(where, "it does not begin with IHDR, 13 bytes", chunk.size);
-  const std::uint8_t* d = chunk.data;
+  const uint8_t* d = chunk.data;
   const Header header{u32_at(d), u32_at(d + 4), d[8], d[9], d[12]};
   check_image_size(header.width, header.height, where);
   if (!allows(header.color, header.depth)) damaged(where, "its colour type allows no such bit depth", header.depth);
@@ -103,20 +104,19 @@ Header read_header(const Chunk& chunk, const std::string& where) {
 }
 
 /// Bytes of each row of the filtered image: of all rows, or of the seven passes' (Table 8.1).
-std::vector<std::size_t> row_sizes(const Header& header) {
-  const std::size_t channels = header.color == rgba_type         ? 4
-                               : header.color == rgb_type        ? 3
-                               : header.color == grey_alpha_type ? 2
-                                                                 : 1;
-  const auto row_bytes = [&](std::size_t width) { return 1 + (width * channels * header.depth + 7) / 8; };
-  if (!header.interlaced) return std::vector<std::size_t>(header.height, row_bytes(header.width));
-  static constexpr std::size_t passes[7][4] = {
-      {0, 8, 0, 8}, {4, 8, 0, 8}, {0, 4, 4, 8}, {2, 4, 0, 4},
-      {0, 2, 2, 4}, {1, 2, 0, 2}, {0, 1, 1, 2}};  // first x, step, first y, step
-  std::vector<std::size_t> out;
+std::vector<size_t> row_sizes(const Header& header) {
+  const size_t channels = header.color == rgba_type         ? 4
+                          : header.color == rgb_type        ? 3
+                          : header.color == grey_alpha_type ? 2
+                                                            : 1;
+  const auto row_bytes = [&](size_t width) { return 1 + (width * channels * header.depth + 7) / 8; };
+  if (!header.interlaced) return std::vector<size_t>(header.height, row_bytes(header.width));
+  static constexpr size_t passes[7][4] = {{0, 8, 0, 8}, {4, 8, 0, 8}, {0, 4, 4, 8}, {2, 4, 0, 4},
+                                          {0, 2, 2, 4}, {1, 2, 0, 2}, {0, 1, 1, 2}};  // first x, step, first y, step
+  std::vector<size_t> out;
   for (const auto& [x, x_step, y, y_step] : passes) {
-    const std::size_t width = (header.width + x_step - 1 - x) / x_step;
-    const std::size_t height = (header.height + y_step - 1 - y) / y_step;
+    const size_t width = (header.width + x_step - 1 - x) / x_step;
+    const size_t height = (header.height + y_step - 1 - y) / y_step;
     if (width > 0) out.insert(out.end(), height, row_bytes(width));
   }
   return out;
@@ -133,7 +133,7 @@ class Inflater {
   Inflater& operator=(const Inflater&) = delete;
 
   /// What is wrong, or nothing.
-  std::string read(Bytes& row, std::size_t number) {
+  std::string read(Bytes& row, size_t number) {
     if (!inflate_to(row)) return fault("its data cannot be inflated after byte", stream_.total_in);
     return stream_.avail_out > 0 ? fault("its data ends in row", number) : "";
   }
@@ -153,7 +153,7 @@ class Inflater {
     while (stream_.avail_out > 0 && !ended_) {
       if (stream_.avail_in == 0) {
         if (next_ == chunks_.size()) return true;
-        stream_.next_in = const_cast<std::uint8_t*>(chunks_[next_].data);
+        stream_.next_in = const_cast<uint8_t*>(chunks_[next_].data);
         stream_.avail_in = static_cast<uInt>(chunks_[next_++].size);
         continue;
       }
@@ -166,16 +166,16 @@ class Inflater {
 
   const std::vector<Chunk>& chunks_;
   z_stream stream_ = {};
-  std::size_t next_ = 0;
+  size_t next_ = 0;
   bool ended_ = false;
 };
 
 struct Rows {
-  std::size_t good = 0;  // from the first on
-  std::string fault;     // what is wrong with the next, or with what ends the data; or nothing
+  size_t good = 0;    // from the first on
+  std::string fault;  // what is wrong with the next, or with what ends the data; or nothing
 };
 
-Rows check_rows(const std::vector<std::size_t>& sizes, const std::vector<Chunk>& data) {
+Rows check_rows(const std::vector<size_t>& sizes, const std::vector<Chunk>& data) {
   Inflater inflater(data);
   Rows out;
   Bytes row;
@@ -192,13 +192,13 @@ Rows check_rows(const std::vector<std::size_t>& sizes, const std::vector<Chunk>&
 }
 
 /// The good rows again; every other row repeats the one above it.
-Bytes mended_rows(const std::vector<std::size_t>& sizes, std::size_t good, const std::vector<Chunk>& data) {
-  constexpr std::uint8_t up_filter = 2;  // filter: what is added to the row above
+Bytes mended_rows(const std::vector<size_t>& sizes, size_t good, const std::vector<Chunk>& data) {
+  constexpr uint8_t up_filter = 2;  // filter: what is added to the row above
   Inflater inflater(data);
-  Bytes out, row, packed(std::size_t{1} << 16);
+  Bytes out, row, packed(size_t{1} << 16);
   z_stream stream = {};
   if (deflateInit(&stream, Z_BEST_SPEED) != Z_OK) throw std::bad_alloc();
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
+  for (size_t i = 0; i < sizes.size(); ++i) {
     row.assign(sizes[i], 0);
     row[0] = up_filter;
     if (i < good) inflater.read(row, i);
@@ -208,7 +208,7 @@ Bytes mended_rows(const std::vector<std::size_t>& sizes, std::size_t good, const
       stream.next_out = packed.data();
       stream.avail_out = static_cast<uInt>(packed.size());
       deflate(&stream, i + 1 == sizes.size() ? Z_FINISH : Z_NO_FLUSH);
-      out.insert(out.end(), packed.begin(), packed.end() - static_cast<std::ptrdiff_t>(stream.avail_out));
+      out.insert(out.end(), packed.begin(), packed.end() - static_cast<ptrdiff_t>(stream.avail_out));
     } while (stream.avail_out == 0);
   }
   deflateEnd(&stream);
@@ -221,24 +221,24 @@ bool is_needed(const Chunk& chunk, const Header& header) {
   return chunk.type == "tRNS" && header.color != grey_alpha_type && header.color != rgba_type;
 }
 
-bool fits(const Chunk& chunk, const Header& header, std::size_t palette_colors) {
+bool fits(const Chunk& chunk, const Header& header, size_t palette_colors) {
   const bool palette = chunk.type == "PLTE";
-  const std::size_t most = std::size_t{1} << header.depth;
+  const size_t most = size_t{1} << header.depth;
   if (palette) return palette_colors == 0 && chunk.size > 0 && chunk.size % 3 == 0 && chunk.size / 3 <= most;
   if (header.color == palette_type) return chunk.size > 0 && chunk.size <= palette_colors;
   return chunk.size == (header.color == grey_type ? 2u : 6u);
 }
 
 /// Appends a chunk with its correct checksum.
-void append(const std::string& type, const std::uint8_t* data, std::size_t size, Bytes& out) {
-  const auto append_u32 = [&](std::uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
+void append(const std::string& type, const uint8_t* data, size_t size, Bytes& out) {
+  const auto append_u32 = [&](uint32_t value) {
+    for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<uint8_t>(value >> shift));
   };
-  append_u32(static_cast<std::uint32_t>(size));
-  const std::size_t begin = out.size();
+  append_u32(static_cast<uint32_t>(size));
+  const size_t begin = out.size();
   out.insert(out.end(), type.begin(), type.end());
   out.insert(out.end(), data, data + size);
-  append_u32(static_cast<std::uint32_t>(crc32_z(0, &out[begin], size + 4)));
+  append_u32(static_cast<uint32_t>(crc32_z(0, &out[begin], size + 4)));
 }
 
 void append(const Chunk& chunk, Bytes& out) {
@@ -246,9 +246,9 @@ void append(const Chunk& chunk, Bytes& out) {
 }
 
 /// The image data as it is, or repaired.
-void append_data(const Header& header, const std::vector<Chunk>& data, std::size_t file_bytes, const std::string& where,
+void append_data(const Header& header, const std::vector<Chunk>& data, size_t file_bytes, const std::string& where,
                  std::string& damage, Bytes& out) {
-  const std::vector<std::size_t> sizes = row_sizes(header);
+  const std::vector<size_t> sizes = row_sizes(header);
   const Rows rows = check_rows(sizes, data);
   const bool all = rows.good == sizes.size();
   if (!all && (rows.good == 0 || header.interlaced)) fail(where, rows.fault);  // later passes lie between the rows
@@ -259,22 +259,21 @@ void append_data(const Header& header, const std::vector<Chunk>& data, std::size
   note(damage, rows.fault);
   if (has_no_picture({header.width, header.height}, file_bytes)) fail(where, damage);  // before it takes gigabytes
   const Bytes mended = mended_rows(sizes, rows.good, data);
-  constexpr std::size_t most_in_chunk = std::size_t{1} << 30;
-  for (std::size_t at = 0; at < mended.size(); at += most_in_chunk) {
+  constexpr size_t most_in_chunk = size_t{1} << 30;
+  for (size_t at = 0; at < mended.size(); at += most_in_chunk) {
     append("IDAT", &mended[at], std::min(most_in_chunk, mended.size() - at), out);
   }
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where,
-                                        std::string& damage) {
+std::vector<uint8_t> essential_png(const std::vector<uint8_t>& bytes, const std::string& where, std::string& damage) {
   const std::vector<Chunk> chunks = split_chunks(bytes, where, damage);
   const Header header = read_header(chunks[0], where);
   Bytes out(bytes.begin(), bytes.begin() + signature_bytes);
   append(chunks[0], out);
   std::vector<Chunk> data;
-  std::size_t palette_colors = 0;
+  size_t palette_colors = 0;
   bool transparent = false;
   for (const Chunk& chunk : chunks) {
     if (chunk.type == "IDAT") data.push_back(chunk);
@@ -296,9 +295,9 @@ std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, 
   return out;
 }
 
-ClaimedSize png_size(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::size_t width_offset = signature_bytes + 8,
-                        height_offset = width_offset + 4;  // IHDR is the first chunk
+ClaimedSize png_size(const std::vector<uint8_t>& bytes) {
+  constexpr size_t width_offset = signature_bytes + 8,
+                   height_offset = width_offset + 4;  // IHDR is the first chunk
   return bytes.size() < height_offset + 4 ? ClaimedSize()
                                           : ClaimedSize{u32_at(&bytes[width_offset]), u32_at(&bytes[height_offset])};
 }

@@ -14,10 +14,9 @@ namespace chandelier::baker {
 /// warnings about them. Damage that viewers tolerate is repaired, and `damage` then names it: a chunk with a wrong
 /// checksum, a file that is cut short, data that ends early or cannot be inflated from some row on (that row and those
 /// below repeat the last good one). Throws Error, beginning with `where`, if no picture is left.
-std::vector<std::uint8_t> essential_png(const std::vector<std::uint8_t>& bytes, const std::string& where,
-                                        std::string& damage);
+std::vector<uint8_t> essential_png(const std::vector<uint8_t>& bytes, const std::string& where, std::string& damage);
 
 /// As its header claims it.
-ClaimedSize png_size(const std::vector<std::uint8_t>& bytes);
+ClaimedSize png_size(const std::vector<uint8_t>& bytes);
 
 }  // namespace chandelier::baker

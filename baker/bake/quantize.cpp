@@ -116,13 +116,13 @@ PackedVertex code(const Vertex& in, const Coding& coding, const Needs& needs, Er
 }
 
 PackedPrimitive code(Primitive&& in, const Coding& coding, const Needs& needs, Errors& errors) {
-  using Range = tbb::blocked_range<std::size_t>;
+  using Range = tbb::blocked_range<size_t>;
   PackedPrimitive out;
   out.vertices.resize(in.vertices.size());
   errors = tbb::parallel_reduce(
       Range(0, in.vertices.size(), 4096), errors,
       [&](const Range& range, Errors sum) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        for (size_t i = range.begin(); i < range.end(); ++i) {
           out.vertices[i] = code(in.vertices[i], coding, needs, sum);
         }
         return sum;
@@ -153,7 +153,7 @@ std::vector<double> key_scales(const Scene& scene) {
     for (const AnimationChannel& channel : animation.channels) {
       if (channel.path != AnimationPath::scale) continue;
       const bool cubic = channel.interpolation == Interpolation::cubic_spline;  // tangent, value, tangent
-      for (std::size_t i = 0; i < channel.values.size(); ++i) {
+      for (size_t i = 0; i < channel.values.size(); ++i) {
         if (cubic && i / 3 % 3 != 1) continue;
         out[channel.node] = std::max(out[channel.node], std::abs(double{channel.values[i]}));
       }
@@ -172,7 +172,7 @@ struct Stretch {
 std::vector<Stretch> stretches_of(const Scene& scene) {
   const std::vector<double> keys = key_scales(scene);
   std::vector<Stretch> out;
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+  for (size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];
     const Stretch above = node.parent == no_index ? Stretch{.most = 1} : out[node.parent];
     const double own = std::max(largest_scale(node.parent_from_local), keys[n]);
@@ -239,7 +239,7 @@ std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings,
   const std::vector<double> scales = largest_scales(scene);
   std::vector<PackedMesh> out(scene.meshes.size());
   std::vector<Errors> errors(scene.meshes.size());
-  tbb::parallel_for(std::size_t{0}, scene.meshes.size(), [&](std::size_t m) {
+  tbb::parallel_for(size_t{0}, scene.meshes.size(), [&](size_t m) {
     std::vector<Primitive>& primitives = scene.meshes[m].primitives;
     if (scales[m] >= 0) {
       const double step = settings.position_error_m > 0
@@ -255,7 +255,7 @@ std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings,
     primitives = {};
   });
   Errors all;
-  for (std::size_t m = 0; m < errors.size(); ++m) {
+  for (size_t m = 0; m < errors.size(); ++m) {
     errors[m].distance_ls *= std::max(scales[m], 0.0);
     all.include(errors[m]);
   }

@@ -122,14 +122,14 @@ void warn_of_rounding(const Scene& scene, const std::vector<Box>& boxes, Warning
 /// bends stays, since its joints may bend others too. Returns how many were moved.
 int recentre_meshes(Scene& scene, const std::vector<Box>& boxes) {
   std::vector<glm::dvec3> origins(scene.meshes.size(), glm::dvec3(0));
-  for (std::size_t m = 0; m < boxes.size(); ++m) {
+  for (size_t m = 0; m < boxes.size(); ++m) {
     if (!boxes[m].is_empty()) origins[m] = pack::scene_origin(boxes[m].low, boxes[m].high);
   }
   for (const MeshInstance& instance : scene.instances) {
     if (instance.skin != no_index) origins[instance.mesh] = glm::dvec3(0);
   }
   int count = 0;
-  for (std::size_t m = 0; m < origins.size(); ++m) {
+  for (size_t m = 0; m < origins.size(); ++m) {
     if (origins[m] == glm::dvec3(0)) continue;
     ++count;
     for (Primitive& primitive : scene.meshes[m].primitives) {
@@ -171,7 +171,7 @@ void move_nodes(Scene& scene, const glm::dvec3& origin) {
     for (AnimationChannel& channel : animation.channels) {
       if (channel.path != AnimationPath::translation || scene.nodes[channel.node].parent != no_index) continue;
       const bool cubic = channel.interpolation == Interpolation::cubic_spline;  // tangent, value, tangent
-      for (std::size_t i = 0; i < channel.values.size(); ++i) {
+      for (size_t i = 0; i < channel.values.size(); ++i) {
         if (cubic && i / 3 % 3 != 1) continue;
         channel.values[i] = static_cast<float>(double{channel.values[i]} - origin[static_cast<int>(i % 3)]);
       }

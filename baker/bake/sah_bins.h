@@ -23,9 +23,9 @@ namespace chandelier::baker::sah {
 
 /// Four floats in one register, with GCC's and Clang's operators; the last one is unused.
 using Float4 = float __attribute__((vector_size(16)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
+using Int4 = int32_t __attribute__((vector_size(16)));
 
-constexpr std::size_t most_bins = 32;
+constexpr size_t most_bins = 32;
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
 inline Float4 min(Float4 a, Float4 b) {
@@ -69,9 +69,9 @@ inline Float4 centre(const Box& box) {
 /// Where along each axis a centre lies, in bins.
 struct Binning {
   Float4 low, scale;
-  std::size_t bins;
+  size_t bins;
 
-  Binning(const Box& centres, std::size_t bin_count) : low(centres.low), bins(bin_count) {
+  Binning(const Box& centres, size_t bin_count) : low(centres.low), bins(bin_count) {
     const Float4 size = centres.high - centres.low;
     for (int axis = 0; axis < 4; ++axis) {
       // Neither an axis without an extent nor one whose extent is beyond a float can be cut.
@@ -90,11 +90,11 @@ struct Binning {
 /// Without a constructor, so that making many costs nothing; empty() is what they start from.
 struct Bin {
   Float4 low, high;
-  std::uint32_t items;
+  uint32_t items;
 
   static Bin empty() { return {Box().low, Box().high, 0}; }
   float cost() const { return Box{low, high}.half_area() * static_cast<float>(items); }
-  void add(const Box& box, std::uint32_t count) {
+  void add(const Box& box, uint32_t count) {
     low = min(low, box.low);
     high = max(high, box.high);
     items += count;
@@ -104,28 +104,27 @@ struct Bin {
 
 using AxisBins = std::array<Bin, most_bins>;
 
-inline std::array<AxisBins, 3> fill_bins(std::span<const BvhItem> items, const Binning& binning, std::size_t stride) {
+inline std::array<AxisBins, 3> fill_bins(std::span<const BvhItem> items, const Binning& binning, size_t stride) {
   std::array<AxisBins, 3> axes;
   for (AxisBins& bins : axes) std::fill_n(bins.begin(), binning.bins, Bin::empty());
-  for (std::size_t i = 0; i < items.size(); i += stride) {
+  for (size_t i = 0; i < items.size(); i += stride) {
     const Box box = box_of(items[i]);
     const Int4 at = binning.of(centre(box));
-    for (std::size_t axis = 0; axis < 3; ++axis) axes[axis][static_cast<std::size_t>(at[axis])].add(box, 1);
+    for (size_t axis = 0; axis < 3; ++axis) axes[axis][static_cast<size_t>(at[axis])].add(box, 1);
   }
   return axes;
 }
 
 /// How many items, brought to the front, are in the bins below `bin`; what their centres span, and the others'.
 /// Which side an item is on is as good as random, so nothing here branches on it.
-inline std::size_t partition(std::span<BvhItem> items, const Binning& binning, int axis, std::size_t bin, Box& left,
-                             Box& right) {
+inline size_t partition(std::span<BvhItem> items, const Binning& binning, int axis, size_t bin, Box& left, Box& right) {
   const Box nothing;
   const float low = binning.low[axis], scale = binning.scale[axis], border = static_cast<float>(bin);
-  std::size_t count = 0;
+  size_t count = 0;
   for (BvhItem& item : items) {
     const Float4 at = centre(box_of(item));
     const bool is_left = (item.low[axis] + item.high[axis] - low) * scale < border;
-    const Int4 left_mask = Int4{} - static_cast<std::int32_t>(is_left);
+    const Int4 left_mask = Int4{} - static_cast<int32_t>(is_left);
     left.add(left_mask ? at : nothing.low, left_mask ? at : nothing.high);
     right.add(left_mask ? nothing.low : at, left_mask ? nothing.high : at);
     const BvhItem this_one = item;
@@ -139,9 +138,9 @@ inline std::size_t partition(std::span<BvhItem> items, const Binning& binning, i
 inline Box centres_of(std::span<const BvhItem> items) {
   // Least and greatest values: the same in any order.
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, items.size(), 16384), Box(),
+      tbb::blocked_range<size_t>(0, items.size(), 16384), Box(),
       [&](const auto& range, Box box) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        for (size_t i = range.begin(); i < range.end(); ++i) {
           const Float4 at = centre(box_of(items[i]));
           box.add(at, at);
         }

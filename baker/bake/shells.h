@@ -2,13 +2,15 @@
 // Pass: which surfaces are closed, so that shadow maps may leave out the half that faces away.
 #pragma once
 
+#include <cstdint>
+
 #include "packed.h"
 
 namespace chandelier::baker {
 
 struct ShellCounts {
-  std::uint64_t shells = 0, closed = 0;  // closed: and oriented outwards
-  std::uint64_t closed_triangles = 0;
+  uint64_t shells = 0, closed = 0;  // closed: and oriented outwards
+  uint64_t closed_triangles = 0;
 };
 
 /// Sets PackedPrimitive::closed. A shell is a set of triangles connected by edges, over all primitives of the mesh. It

@@ -14,7 +14,7 @@ class SceneKey {
 
   template <typename Item>
   void add_all(const std::vector<Item>& items) {
-    key_.add(std::uint64_t{items.size()});
+    key_.add(uint64_t{items.size()});
     for (const Item& item : items) add(item);
   }
 
@@ -49,7 +49,7 @@ class SceneKey {
     const auto& [name, where, world_from_local, mesh, node, skin, shadowless] = instance;
     key_.add_text(name);
     add(world_from_local);
-    for (const std::uint32_t number : {mesh, node, skin}) key_.add(number);
+    for (const uint32_t number : {mesh, node, skin}) key_.add(number);
     key_.add(shadowless);
   }
 
@@ -119,7 +119,7 @@ void add_geometry_settings(CacheKey& key, const BakeSettings& settings) {
   key.add(position_error_m);
   key.add(normal_bits);
   key.add(uv_bits);
-  for (const std::uint32_t cells : resolution) key.add(cells);
+  for (const uint32_t cells : resolution) key.add(cells);
   key.add(mode);
   key.add(smooth_angle_deg);
   key.add(images.textures == TextureMode::none);  // then materials have none

@@ -59,10 +59,10 @@ class SidedVertices {
  public:
   explicit SidedVertices(const Primitive& in) : in_(in), number_(2 * in.vertices.size(), no_index) {}
 
-  std::uint32_t use(std::uint32_t vertex, bool mirrored) {
-    std::uint32_t& number = number_[2 * std::size_t{vertex} + mirrored];
+  uint32_t use(uint32_t vertex, bool mirrored) {
+    uint32_t& number = number_[2 * size_t{vertex} + mirrored];
     if (number == no_index) {
-      number = static_cast<std::uint32_t>(vertices.size());
+      number = static_cast<uint32_t>(vertices.size());
       vertices.push_back(in_.vertices[vertex]);
       if (!in_.skin_vertices.empty()) skin_vertices.push_back(in_.skin_vertices[vertex]);
       vertices.back().tangent_ls.w = mirrored ? -1.0f : 1.0f;
@@ -77,25 +77,25 @@ class SidedVertices {
 
  private:
   const Primitive& in_;
-  std::vector<std::uint32_t> number_;
+  std::vector<uint32_t> number_;
 };
 
 }  // namespace
 
 void make_tangents(Primitive& primitive) {
   SidedVertices sided(primitive);
-  for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
-    const std::uint32_t corners[] = {primitive.indices[t], primitive.indices[t + 1], primitive.indices[t + 2]};
+  for (size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
+    const uint32_t corners[] = {primitive.indices[t], primitive.indices[t + 1], primitive.indices[t + 2]};
     const Vertex* v[] = {&primitive.vertices[corners[0]], &primitive.vertices[corners[1]],
                          &primitive.vertices[corners[2]]};
     const TriangleFrame frame = triangle_frame(*v[0], *v[1], *v[2], primitive.tangents_from_uv1);
     for (int c = 0; c < 3; ++c) {
-      const std::uint32_t number = sided.use(corners[c], frame.mirrored);
+      const uint32_t number = sided.use(corners[c], frame.mirrored);
       sided.sums[number] += frame.tangent * angle_at(*v[c], *v[(c + 1) % 3], *v[(c + 2) % 3]);
       primitive.indices[t + c] = number;
     }
   }
-  for (std::size_t i = 0; i < sided.vertices.size(); ++i) {
+  for (size_t i = 0; i < sided.vertices.size(); ++i) {
     Vertex& vertex = sided.vertices[i];
     vertex.tangent_ls = glm::vec4(across(vertex.normal_ls, sided.sums[i]), vertex.tangent_ls.w);
   }
@@ -103,14 +103,14 @@ void make_tangents(Primitive& primitive) {
   primitive.skin_vertices = std::move(sided.skin_vertices);
 }
 
-std::size_t make_tangents(Scene& scene) {
+size_t make_tangents(Scene& scene) {
   std::vector<Primitive*> without;
   for (Mesh& mesh : scene.meshes) {
     for (Primitive& primitive : mesh.primitives) {
       if (primitive.needs_tangents) without.push_back(&primitive);
     }
   }
-  tbb::parallel_for(std::size_t{0}, without.size(), [&](std::size_t i) {
+  tbb::parallel_for(size_t{0}, without.size(), [&](size_t i) {
     weld(*without[i]);
     make_tangents(*without[i]);
     without[i]->needs_tangents = false;

@@ -2,6 +2,8 @@
 // Pass: tangents for normal maps, from positions and texture coordinates.
 #pragma once
 
+#include <cstddef>
+
 #include "../scene.h"
 
 namespace chandelier::baker {
@@ -10,6 +12,6 @@ namespace chandelier::baker {
 void make_tangents(Primitive& primitive);
 
 /// Welds each primitive that needs tangents, and makes them; returns how many there were.
-std::size_t make_tangents(Scene& scene);
+size_t make_tangents(Scene& scene);
 
 }  // namespace chandelier::baker

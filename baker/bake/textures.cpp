@@ -24,9 +24,9 @@ class Textures {
  public:
   Textures(const Scene& scene, pack::Contents& pack) : scene_(scene), pack_(pack) {}
 
-  std::uint32_t use(const TextureUse& from, ImageUse use, float alpha_cutoff) {
+  uint32_t use(const TextureUse& from, ImageUse use, float alpha_cutoff) {
     const Texture& in = scene_.textures[from.texture];
-    const std::uint32_t image = request({in.image, use, alpha_cutoff});
+    const uint32_t image = request({in.image, use, alpha_cutoff});
     const auto [it, added] = textures_.try_emplace({from.texture, image, from.uv_transform}, 0);
     if (added) {
       it->second = fit_u32(pack_.textures.size(), "textures");
@@ -44,7 +44,7 @@ class Textures {
 
  private:
   struct Key {
-    std::uint32_t texture, request;
+    uint32_t texture, request;
     UvTransform uv_transform;
 
     bool operator<(const Key& other) const {
@@ -56,7 +56,7 @@ class Textures {
     }
   };
 
-  std::uint32_t request(const ImageRequest& wanted) {
+  uint32_t request(const ImageRequest& wanted) {
     const auto [it, added] = requests_.try_emplace(wanted, 0);
     if (added) {
       it->second = fit_u32(requests.size(), "images");
@@ -67,8 +67,8 @@ class Textures {
 
   const Scene& scene_;
   pack::Contents& pack_;
-  std::map<Key, std::uint32_t> textures_;
-  std::map<ImageRequest, std::uint32_t> requests_;
+  std::map<Key, uint32_t> textures_;
+  std::map<ImageRequest, uint32_t> requests_;
 };
 
 /// The least alpha of the base colour's texture that is seen; 0 where the texture does not decide it. Vertex colours
@@ -83,17 +83,17 @@ void add_maps(const Material& material, Textures& textures, pack::Material& out)
   const float cutoff = texture_cutoff(material);
   const struct {
     const TextureUse& from;
-    std::uint32_t& to;
+    uint32_t& to;
     ImageUse use;
   } maps[] = {{material.base_color, out.base_color_texture, material.masked ? ImageUse::masked_color : ImageUse::color},
               {material.metallic_roughness, out.metallic_roughness_texture, ImageUse::data},
               {material.normal, out.normal_texture, ImageUse::normal},
               {material.occlusion, out.occlusion_texture, ImageUse::data},
               {material.emissive_map, out.emissive_texture, ImageUse::color}};
-  for (std::uint32_t i = 0; i < 5; ++i) {
+  for (uint32_t i = 0; i < 5; ++i) {
     if (maps[i].from.texture == no_index) continue;
     maps[i].to = textures.use(maps[i].from, maps[i].use, i == 0 ? cutoff : 0);
-    out.uv1_mask |= std::uint32_t{maps[i].from.uv1} << i;
+    out.uv1_mask |= uint32_t{maps[i].from.uv1} << i;
   }
 }
 

@@ -21,28 +21,28 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t task_batches = 64;
+constexpr size_t task_batches = 64;
 
 struct Tree {
   BvhPlace place;
   std::span<BvhItem> items;
-  std::vector<std::uint32_t> order;  // of items in the leaves
+  std::vector<uint32_t> order;  // of items in the leaves
   BvhShape shape;
 };
 
-std::uint32_t triangle_count(const pack::Batch& batch) {
+uint32_t triangle_count(const pack::Batch& batch) {
   return batch.index_count / 3;
 }
 
-std::uint64_t triangle_count(const pack::Contents& pack, const pack::Mesh& mesh) {
-  std::uint64_t count = 0;
-  for (std::uint32_t b = 0; b < mesh.batch_count; ++b) count += triangle_count(pack.batches[mesh.first_batch + b]);
+uint64_t triangle_count(const pack::Contents& pack, const pack::Mesh& mesh) {
+  uint64_t count = 0;
+  for (uint32_t b = 0; b < mesh.batch_count; ++b) count += triangle_count(pack.batches[mesh.first_batch + b]);
   return count;
 }
 
-BvhItem item_of(const pack::Contents& pack, std::uint32_t triangle) {
-  const auto corner = [&](std::size_t c) -> const glm::vec3& {
-    return pack.positions[pack.indices[std::size_t{triangle} * 3 + c].vertex].position_ls;
+BvhItem item_of(const pack::Contents& pack, uint32_t triangle) {
+  const auto corner = [&](size_t c) -> const glm::vec3& {
+    return pack.positions[pack.indices[size_t{triangle} * 3 + c].vertex].position_ls;
   };
   const glm::vec3 &a = corner(0), &b = corner(1), &c = corner(2);
   const double area_m2 = 0.5 * glm::length(glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)));
@@ -53,17 +53,17 @@ BvhItem item_of(const pack::Contents& pack, std::uint32_t triangle) {
 /// Treelets of each batch, in blocks of batches, and one tree over them all.
 void shape_tree(const pack::Contents& pack, const pack::Mesh& mesh, Tree& tree) {
   const std::span batches = std::span(pack.batches).subspan(mesh.first_batch, mesh.batch_count);
-  std::vector<std::uint32_t> first_items(batches.size());
-  std::uint32_t next = 0;
-  for (std::size_t b = 0; b < batches.size(); ++b) {
+  std::vector<uint32_t> first_items(batches.size());
+  uint32_t next = 0;
+  for (size_t b = 0; b < batches.size(); ++b) {
     first_items[b] = next;
     next += triangle_count(batches[b]);
   }
   std::vector<Treelets> parts((batches.size() + task_batches - 1) / task_batches);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    for (std::size_t b = part * task_batches; b < std::min(batches.size(), (part + 1) * task_batches); ++b) {
+  tbb::parallel_for(size_t{0}, parts.size(), [&](size_t part) {
+    for (size_t b = part * task_batches; b < std::min(batches.size(), (part + 1) * task_batches); ++b) {
       const std::span items = tree.items.subspan(first_items[b], triangle_count(batches[b]));
-      for (std::uint32_t t = 0; t < items.size(); ++t) items[t] = item_of(pack, batches[b].first_index / 3 + t);
+      for (uint32_t t = 0; t < items.size(); ++t) items[t] = item_of(pack, batches[b].first_index / 3 + t);
       shape_treelets(items, first_items[b], parts[part]);
     }
   });
@@ -71,31 +71,31 @@ void shape_tree(const pack::Contents& pack, const pack::Mesh& mesh, Tree& tree) 
 }
 
 /// Where each mesh's items go; returns their count.
-std::uint32_t place_items(const pack::Contents& pack, std::vector<Tree>& trees) {
-  std::uint64_t items = 0;
-  for (std::size_t m = 0; m < trees.size(); ++m) {
-    trees[m].place.first_item = static_cast<std::uint32_t>(items);
+uint32_t place_items(const pack::Contents& pack, std::vector<Tree>& trees) {
+  uint64_t items = 0;
+  for (size_t m = 0; m < trees.size(); ++m) {
+    trees[m].place.first_item = static_cast<uint32_t>(items);
     items += triangle_count(pack, pack.meshes[m]);
     if (items > most_bvh_items) {
       fail("scene", "has more triangles than triangle BVHs can hold (above " + std::to_string(most_bvh_items) + ")");
     }
   }
-  return static_cast<std::uint32_t>(items);
+  return static_cast<uint32_t>(items);
 }
 
 /// Where each mesh's nodes go; returns their count, which fits: a tree has less than two nodes an item.
-std::uint32_t place_nodes(std::vector<Tree>& trees, std::vector<pack::Mesh>& meshes) {
-  std::uint32_t nodes = 0;
-  for (std::size_t m = 0; m < trees.size(); ++m) {
+uint32_t place_nodes(std::vector<Tree>& trees, std::vector<pack::Mesh>& meshes) {
+  uint32_t nodes = 0;
+  for (size_t m = 0; m < trees.size(); ++m) {
     trees[m].place.first_node = meshes[m].first_node = nodes;
-    meshes[m].node_count = static_cast<std::uint32_t>(trees[m].shape.size());
+    meshes[m].node_count = static_cast<uint32_t>(trees[m].shape.size());
     nodes += meshes[m].node_count;
   }
   return nodes;
 }
 
 /// Fills the sections with zeros, in parallel, since clearing memory takes long.
-void make_room(std::uint32_t nodes, std::uint32_t items, pack::Contents& pack) {
+void make_room(uint32_t nodes, uint32_t items, pack::Contents& pack) {
   tbb::parallel_invoke([&] { pack.triangle_bvh.assign(nodes, {}); },
                        [&] {
                          pack.triangle_bvh_items.assign(items, {});
@@ -105,8 +105,8 @@ void make_room(std::uint32_t nodes, std::uint32_t items, pack::Contents& pack) {
 
 void fill_tree(const Tree& tree, pack::Contents& pack) {
   fill_bvh(tree.items, tree.order, tree.shape, tree.place, pack.triangle_bvh, pack.triangle_bvh_areas);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.items.size(), 16384), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, tree.items.size(), 16384), [&](const auto& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) {
       pack.triangle_bvh_items[tree.place.first_item + i].triangle = tree.items[tree.order[i]].number;
     }
   });
@@ -115,12 +115,12 @@ void fill_tree(const Tree& tree, pack::Contents& pack) {
 /// Over all meshes; the SAH cost is the mean over triangles.
 void note(const pack::Contents& pack, const std::vector<Tree>& trees, PassReport& pass) {
   std::vector<BvhStats> each(trees.size());
-  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t m) {
+  tbb::parallel_for(size_t{0}, trees.size(), [&](size_t m) {
     const pack::Mesh& mesh = pack.meshes[m];
     each[m] = bvh_stats(std::span(pack.triangle_bvh).subspan(mesh.first_node, mesh.node_count), mesh.first_node);
   });
   BvhStats all;
-  for (std::size_t m = 0; m < trees.size(); ++m) {
+  for (size_t m = 0; m < trees.size(); ++m) {
     all.nodes += each[m].nodes;
     all.leaves += each[m].leaves;
     all.depth = std::max(all.depth, each[m].depth);
@@ -137,15 +137,15 @@ void note(const pack::Contents& pack, const std::vector<Tree>& trees, PassReport
 
 void make_triangle_bvh(PassReport& pass, pack::Contents& pack) {
   std::vector<Tree> trees(pack.meshes.size());
-  const std::uint32_t item_count = place_items(pack, trees);
+  const uint32_t item_count = place_items(pack, trees);
   const auto items = std::make_unique_for_overwrite<BvhItem[]>(item_count);
-  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t m) {
+  tbb::parallel_for(size_t{0}, trees.size(), [&](size_t m) {
     Tree& tree = trees[m];
     tree.items = {items.get() + tree.place.first_item, triangle_count(pack, pack.meshes[m])};
     shape_tree(pack, pack.meshes[m], tree);
   });
   make_room(place_nodes(trees, pack.meshes), item_count, pack);
-  tbb::parallel_for(std::size_t{0}, trees.size(), [&](std::size_t m) { fill_tree(trees[m], pack); });
+  tbb::parallel_for(size_t{0}, trees.size(), [&](size_t m) { fill_tree(trees[m], pack); });
   note(pack, trees, pass);
 }
 

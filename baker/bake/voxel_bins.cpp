@@ -19,7 +19,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t block_size = 64;  // batch instances: some thousand triangles
+constexpr size_t block_size = 64;  // batch instances: some thousand triangles
 
 /// The grid around the static batch instances; none where there are none.
 std::vector<pack::VoxelGrid> grid_of(const VoxelSettings& settings, const pack::Contents& pack) {
@@ -36,21 +36,21 @@ std::vector<pack::VoxelGrid> grid_of(const VoxelSettings& settings, const pack::
 }
 
 std::vector<VoxelBlock> make_blocks(const pack::Contents& pack, const Grid& grid, pack::VoxelMode mode) {
-  const std::size_t count = pack.batch_instances.size();
+  const size_t count = pack.batch_instances.size();
   std::vector<VoxelBlock> blocks((count + block_size - 1) / block_size);
-  std::atomic<std::uint64_t> clipped_triangles = 0;
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    for (std::size_t i = b * block_size; i < std::min(count, (b + 1) * block_size); ++i) {
+  std::atomic<uint64_t> clipped_triangles = 0;
+  tbb::parallel_for(size_t{0}, blocks.size(), [&](size_t b) {
+    for (size_t i = b * block_size; i < std::min(count, (b + 1) * block_size); ++i) {
       const pack::BatchInstance& record = pack.batch_instances[i];
       if (!is_static(pack, record) || !pack::throws_shadow(pack, record)) continue;
-      const PlacedBatch placed(pack, static_cast<std::uint32_t>(i));
+      const PlacedBatch placed(pack, static_cast<uint32_t>(i));
       if (mode == pack::VoxelMode::clip) {
         bin_clipped(placed, grid, clipped_triangles, blocks[b]);
       } else {
         bin_separate(placed, grid, blocks[b]);
       }
     }
-    for (VoxelPiece& piece : blocks[b].pieces) piece.block = static_cast<std::uint32_t>(b);
+    for (VoxelPiece& piece : blocks[b].pieces) piece.block = static_cast<uint32_t>(b);
   });
   return blocks;
 }
@@ -58,29 +58,29 @@ std::vector<VoxelBlock> make_blocks(const pack::Contents& pack, const Grid& grid
 /// All pieces, cell after cell, in each in the order of batch instances.
 struct SortedPieces {
   std::vector<VoxelPiece> pieces;
-  std::vector<std::uint32_t> first_piece;     // of each cell, of no cell, and the end
-  std::vector<std::uint32_t> first_triangle;  // of each piece, in voxel_indices
-  std::uint64_t triangle_count = 0;
+  std::vector<uint32_t> first_piece;     // of each cell, of no cell, and the end
+  std::vector<uint32_t> first_triangle;  // of each piece, in voxel_indices
+  uint64_t triangle_count = 0;
 };
 
-SortedPieces sort_pieces(std::vector<VoxelBlock>& blocks, std::uint32_t cell_count) {
+SortedPieces sort_pieces(std::vector<VoxelBlock>& blocks, uint32_t cell_count) {
   SortedPieces out;
-  std::uint64_t count = 0;
+  uint64_t count = 0;
   for (const VoxelBlock& block : blocks) count += block.pieces.size();
   fit_u32(count, "voxel runs");
-  out.first_piece.resize(std::size_t{cell_count} + 2);
+  out.first_piece.resize(size_t{cell_count} + 2);
   for (const VoxelBlock& block : blocks) {
     for (const VoxelPiece& piece : block.pieces) ++out.first_piece[piece.cell + 1];
   }
-  for (std::size_t cell = 0; cell <= cell_count; ++cell) out.first_piece[cell + 1] += out.first_piece[cell];
+  for (size_t cell = 0; cell <= cell_count; ++cell) out.first_piece[cell + 1] += out.first_piece[cell];
   out.pieces.resize(count);
-  std::vector<std::uint32_t> next = out.first_piece;
+  std::vector<uint32_t> next = out.first_piece;
   for (VoxelBlock& block : blocks) {
     for (const VoxelPiece& piece : block.pieces) out.pieces[next[piece.cell]++] = piece;
     block.pieces = {};
   }
   for (const VoxelPiece& piece : out.pieces) {
-    out.first_triangle.push_back(static_cast<std::uint32_t>(out.triangle_count));
+    out.first_triangle.push_back(static_cast<uint32_t>(out.triangle_count));
     out.triangle_count += piece.triangle_count;
     fit_u32(3 * out.triangle_count, "triangle corners in voxels");
   }
@@ -88,12 +88,12 @@ SortedPieces sort_pieces(std::vector<VoxelBlock>& blocks, std::uint32_t cell_cou
 }
 
 /// Appends the runs of pieces in a row: one while instance and material stay.
-void append_runs(std::span<const VoxelPiece> pieces, bool clipped, pack::Contents& pack, std::uint32_t& next_index) {
-  const std::size_t first_run = pack.voxel_runs.size();
+void append_runs(std::span<const VoxelPiece> pieces, bool clipped, pack::Contents& pack, uint32_t& next_index) {
+  const size_t first_run = pack.voxel_runs.size();
   for (const VoxelPiece& piece : pieces) {
     const pack::BatchInstance& record = pack.batch_instances[piece.batch_instance];
-    const std::uint32_t instance = clipped ? pack::none : record.instance;
-    const std::uint32_t material = pack.batches[record.batch].material;
+    const uint32_t instance = clipped ? pack::none : record.instance;
+    const uint32_t material = pack.batches[record.batch].material;
     if (pack.voxel_runs.size() == first_run || pack.voxel_runs.back().instance != instance ||
         pack.voxel_runs.back().material != material) {
       pack.voxel_runs.push_back({instance, material, next_index, 0});
@@ -103,18 +103,18 @@ void append_runs(std::span<const VoxelPiece> pieces, bool clipped, pack::Content
   }
 }
 
-void make_cells(const SortedPieces& sorted, std::uint32_t cell_count, pack::Contents& pack) {
+void make_cells(const SortedPieces& sorted, uint32_t cell_count, pack::Contents& pack) {
   const bool clipped = pack.voxel_grid[0].mode == pack::VoxelMode::clip;
   pack.voxel_cells.resize(cell_count);
-  pack.voxel_occupancy.resize((std::size_t{cell_count} + 31) / 32);
-  std::uint32_t next_index = 0;
-  for (std::uint32_t cell = 0; cell <= cell_count; ++cell) {
+  pack.voxel_occupancy.resize((size_t{cell_count} + 31) / 32);
+  uint32_t next_index = 0;
+  for (uint32_t cell = 0; cell <= cell_count; ++cell) {
     const std::span pieces =
         std::span(sorted.pieces)
             .subspan(sorted.first_piece[cell], sorted.first_piece[cell + 1] - sorted.first_piece[cell]);
-    const auto first_run = static_cast<std::uint32_t>(pack.voxel_runs.size());
+    const auto first_run = static_cast<uint32_t>(pack.voxel_runs.size());
     append_runs(pieces, clipped, pack, next_index);
-    const std::uint32_t run_count = static_cast<std::uint32_t>(pack.voxel_runs.size()) - first_run;
+    const uint32_t run_count = static_cast<uint32_t>(pack.voxel_runs.size()) - first_run;
     if (cell == cell_count) {
       pack.voxel_grid[0].no_cull_first_run = first_run;
       pack.voxel_grid[0].no_cull_run_count = run_count;
@@ -126,37 +126,37 @@ void make_cells(const SortedPieces& sorted, std::uint32_t cell_count, pack::Cont
 }
 
 void fill_separate(const SortedPieces& sorted, const std::vector<VoxelBlock>& blocks, pack::Contents& pack) {
-  tbb::parallel_for(std::size_t{0}, sorted.pieces.size(), [&](std::size_t p) {
+  tbb::parallel_for(size_t{0}, sorted.pieces.size(), [&](size_t p) {
     const VoxelPiece& piece = sorted.pieces[p];
     const PlacedBatch placed(pack, piece.batch_instance);
-    pack::VoxelIndex* out = &pack.voxel_indices[std::size_t{3} * sorted.first_triangle[p]];
-    for (std::uint32_t i = 0; i < piece.triangle_count; ++i) {
-      const std::uint32_t triangle =
+    pack::VoxelIndex* out = &pack.voxel_indices[size_t{3} * sorted.first_triangle[p]];
+    for (uint32_t i = 0; i < piece.triangle_count; ++i) {
+      const uint32_t triangle =
           piece.first_number == pack::none ? i : blocks[piece.block].numbers[piece.first_number + i];
-      for (std::uint32_t corner = 0; corner < 3; ++corner) *out++ = {placed.vertex(triangle, corner)};
+      for (uint32_t corner = 0; corner < 3; ++corner) *out++ = {placed.vertex(triangle, corner)};
     }
   });
 }
 
 /// Vertices of one cell, equal ones once; voxel_indices of the cell then count from the cell's first vertex.
-std::vector<pack::VoxelVertex> weld_cell(const SortedPieces& sorted, const std::vector<VoxelBlock>& blocks,
-                                         std::size_t cell, pack::Contents& pack) {
-  std::size_t most = 0;
-  for (std::size_t p = sorted.first_piece[cell]; p < sorted.first_piece[cell + 1]; ++p) {
+std::vector<pack::VoxelVertex> weld_cell(const SortedPieces& sorted, const std::vector<VoxelBlock>& blocks, size_t cell,
+                                         pack::Contents& pack) {
+  size_t most = 0;
+  for (size_t p = sorted.first_piece[cell]; p < sorted.first_piece[cell + 1]; ++p) {
     most += sorted.pieces[p].vertex_count;
   }
   UniqueVertices unique;
   unique.reset(most);
-  std::vector<std::uint32_t> numbers;  // of the piece's vertices in the cell
-  for (std::size_t p = sorted.first_piece[cell]; p < sorted.first_piece[cell + 1]; ++p) {
+  std::vector<uint32_t> numbers;  // of the piece's vertices in the cell
+  for (size_t p = sorted.first_piece[cell]; p < sorted.first_piece[cell + 1]; ++p) {
     const VoxelPiece& piece = sorted.pieces[p];
     const VoxelBlock& block = blocks[piece.block];
     numbers.clear();
-    for (std::uint32_t v = 0; v < piece.vertex_count; ++v) {
+    for (uint32_t v = 0; v < piece.vertex_count; ++v) {
       numbers.push_back(unique.add(block.vertices[piece.first_vertex + v]));
     }
-    pack::VoxelIndex* out = &pack.voxel_indices[std::size_t{3} * sorted.first_triangle[p]];
-    for (std::size_t i = 0; i < std::size_t{3} * piece.triangle_count; ++i) {
+    pack::VoxelIndex* out = &pack.voxel_indices[size_t{3} * sorted.first_triangle[p]];
+    for (size_t i = 0; i < size_t{3} * piece.triangle_count; ++i) {
       *out++ = {numbers[block.numbers[piece.first_number + i]]};
     }
   }
@@ -164,21 +164,21 @@ std::vector<pack::VoxelVertex> weld_cell(const SortedPieces& sorted, const std::
 }
 
 void fill_clipped(const SortedPieces& sorted, const std::vector<VoxelBlock>& blocks, pack::Contents& pack) {
-  const std::size_t cell_count = pack.voxel_cells.size();
+  const size_t cell_count = pack.voxel_cells.size();
   std::vector<std::vector<pack::VoxelVertex>> vertices(cell_count);
-  tbb::parallel_for(std::size_t{0}, cell_count, [&](std::size_t cell) {
+  tbb::parallel_for(size_t{0}, cell_count, [&](size_t cell) {
     if (pack.voxel_cells[cell].run_count) vertices[cell] = weld_cell(sorted, blocks, cell, pack);
   });
-  std::vector<std::uint32_t> first_vertex(cell_count + 1);
-  for (std::size_t cell = 0; cell < cell_count; ++cell) {
-    first_vertex[cell + 1] = fit_u32(std::uint64_t{first_vertex[cell]} + vertices[cell].size(), "vertices in voxels");
+  std::vector<uint32_t> first_vertex(cell_count + 1);
+  for (size_t cell = 0; cell < cell_count; ++cell) {
+    first_vertex[cell + 1] = fit_u32(uint64_t{first_vertex[cell]} + vertices[cell].size(), "vertices in voxels");
   }
   pack.voxel_vertices.resize(first_vertex[cell_count]);
-  tbb::parallel_for(std::size_t{0}, cell_count, [&](std::size_t cell) {
+  tbb::parallel_for(size_t{0}, cell_count, [&](size_t cell) {
     std::copy(vertices[cell].begin(), vertices[cell].end(), pack.voxel_vertices.begin() + first_vertex[cell]);
-    for (std::uint32_t r = 0; r < pack.voxel_cells[cell].run_count; ++r) {
+    for (uint32_t r = 0; r < pack.voxel_cells[cell].run_count; ++r) {
       const pack::VoxelRun& run = pack.voxel_runs[pack.voxel_cells[cell].first_run + r];
-      for (std::uint32_t i = 0; i < run.index_count; ++i) {
+      for (uint32_t i = 0; i < run.index_count; ++i) {
         pack.voxel_indices[run.first_index + i].vertex += first_vertex[cell];
       }
     }
@@ -187,10 +187,10 @@ void fill_clipped(const SortedPieces& sorted, const std::vector<VoxelBlock>& blo
 }
 
 void tell(const pack::Contents& pack, const std::vector<VoxelBlock>& blocks, PassReport& pass) {
-  std::uint64_t occupied = 0, no_cull = 0;
+  uint64_t occupied = 0, no_cull = 0;
   for (const pack::VoxelCell& cell : pack.voxel_cells) occupied += cell.run_count != 0;
   const pack::VoxelGrid& grid = pack.voxel_grid[0];
-  for (std::uint32_t r = 0; r < grid.no_cull_run_count; ++r) {
+  for (uint32_t r = 0; r < grid.no_cull_run_count; ++r) {
     no_cull += pack.voxel_runs[grid.no_cull_first_run + r].index_count / 3;
   }
   pass.bytes = sizeof(grid) + std::span(pack.voxel_cells).size_bytes() + std::span(pack.voxel_runs).size_bytes() +

@@ -12,7 +12,7 @@
 namespace chandelier::baker {
 
 struct VoxelSettings {
-  std::array<std::uint32_t, 3> resolution = {32, 32, 32};  // cells along x, y, z; all zero: no grid
+  std::array<uint32_t, 3> resolution = {32, 32, 32};  // cells along x, y, z; all zero: no grid
   pack::VoxelMode mode = pack::VoxelMode::separate;
 };
 

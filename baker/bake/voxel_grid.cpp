@@ -27,7 +27,7 @@ int Grid::cell_of(int axis, double coordinate) const {
 }
 
 pack::VoxelGrid make_voxel_grid(const glm::vec3& bounds_min_ws, const glm::vec3& bounds_max_ws,
-                                const std::array<std::uint32_t, 3>& resolution, pack::VoxelMode mode) {
+                                const std::array<uint32_t, 3>& resolution, pack::VoxelMode mode) {
   const glm::dvec3 low(bounds_min_ws), high(bounds_max_ws);
   const double widest = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   pack::VoxelGrid grid;
@@ -37,7 +37,7 @@ pack::VoxelGrid make_voxel_grid(const glm::vec3& bounds_min_ws, const glm::vec3&
     // 2⁻¹⁸ of the coordinates is some 60 times what rounding to floats below takes back; the rest is for flat scenes.
     const double scale = std::max(std::abs(low[axis]), std::abs(high[axis]));
     const double margin = std::max({widest * 1e-4, scale * 0x1p-18, 1e-6});
-    const double cells = resolution[static_cast<std::size_t>(axis)];
+    const double cells = resolution[static_cast<size_t>(axis)];
     grid.bounds_min_ws[axis] = static_cast<float>(low[axis] - margin);
     grid.cell_size_m[axis] = static_cast<float>((high[axis] - low[axis] + 2 * margin) / cells);
     const double end = double{grid.bounds_min_ws[axis]} + cells * double{grid.cell_size_m[axis]};
@@ -49,7 +49,7 @@ pack::VoxelGrid make_voxel_grid(const glm::vec3& bounds_min_ws, const glm::vec3&
   return grid;
 }
 
-std::uint32_t cell_at(const pack::VoxelGrid& record, const glm::vec3& position_ws) {
+uint32_t cell_at(const pack::VoxelGrid& record, const glm::vec3& position_ws) {
   const Grid grid(record);
   glm::ivec3 cell;
   for (int axis = 0; axis < 3; ++axis) {

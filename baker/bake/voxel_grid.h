@@ -10,8 +10,8 @@
 
 namespace chandelier::baker {
 
-constexpr std::uint32_t most_voxels_on_axis = 1024;
-constexpr std::uint32_t most_voxels = 1u << 24;  // in a grid: 128 MiB of records
+constexpr uint32_t most_voxels_on_axis = 1024;
+constexpr uint32_t most_voxels = 1u << 24;  // in a grid: 128 MiB of records
 
 /// A pack's grid in double precision, where cell numbers times cell sizes are exact.
 struct Grid {
@@ -23,14 +23,14 @@ struct Grid {
 
   explicit Grid(const pack::VoxelGrid& record);
 
-  std::uint32_t cell_count() const {
-    return static_cast<std::uint32_t>(resolution.x) * static_cast<std::uint32_t>(resolution.y) *
-           static_cast<std::uint32_t>(resolution.z);
+  uint32_t cell_count() const {
+    return static_cast<uint32_t>(resolution.x) * static_cast<uint32_t>(resolution.y) *
+           static_cast<uint32_t>(resolution.z);
   }
   /// The lower plane of the cells with number `cell` on an axis.
   double plane(int axis, int cell) const { return low[axis] + cell * cell_size[axis]; }
-  std::uint32_t number(const glm::ivec3& cell) const {
-    return static_cast<std::uint32_t>(cell.x + resolution.x * (cell.y + resolution.y * cell.z));
+  uint32_t number(const glm::ivec3& cell) const {
+    return static_cast<uint32_t>(cell.x + resolution.x * (cell.y + resolution.y * cell.z));
   }
   /// The cell of a point on one axis; what lies in a plane belongs to the cell above. Points outside: the nearest cell.
   int cell_of(int axis, double coordinate) const;
@@ -45,9 +45,9 @@ struct Grid {
 /// A grid around a box, a little wider, so that nothing in the box touches the grid's outside. Axes without extent get
 /// one. Throws Error where a float cannot hold the grid.
 pack::VoxelGrid make_voxel_grid(const glm::vec3& bounds_min_ws, const glm::vec3& bounds_max_ws,
-                                const std::array<std::uint32_t, 3>& resolution, pack::VoxelMode mode);
+                                const std::array<uint32_t, 3>& resolution, pack::VoxelMode mode);
 
 /// The number of the cell that holds a point, or pack::none outside the grid.
-std::uint32_t cell_at(const pack::VoxelGrid& grid, const glm::vec3& position_ws);
+uint32_t cell_at(const pack::VoxelGrid& grid, const glm::vec3& position_ws);
 
 }  // namespace chandelier::baker

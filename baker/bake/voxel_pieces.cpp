@@ -28,7 +28,7 @@ CellRange cells_of(const Grid& grid, const glm::dvec3& box_min, const glm::dvec3
 
 /// The cells that a triangle overlaps, or most_cells + 1 where they are more.
 struct Overlaps {
-  std::array<std::uint32_t, most_cells> cells{};
+  std::array<uint32_t, most_cells> cells{};
   int count = 0;
 };
 
@@ -44,7 +44,7 @@ void test_cells(const Triangle& triangle, const Grid& grid, const CellRange& ran
           out.count = most_cells + 1;
           return;
         }
-        out.cells[static_cast<std::size_t>(out.count++)] = grid.number(cell);
+        out.cells[static_cast<size_t>(out.count++)] = grid.number(cell);
       }
     }
   }
@@ -69,13 +69,13 @@ Overlaps overlaps_of(const Triangle& triangle, const Grid& grid, double slack) {
 
 }  // namespace
 
-PlacedBatch::PlacedBatch(const pack::Contents& contents, std::uint32_t number)
+PlacedBatch::PlacedBatch(const pack::Contents& contents, uint32_t number)
     : pack(contents),
       batch_instance(number),
       batch(contents.batches[contents.batch_instances[number].batch]),
       instance(contents.instances[contents.batch_instances[number].instance]) {
   for (int row = 0; row < 3; ++row) {
-    const glm::dvec4 values(instance.world_from_local[static_cast<std::size_t>(row)]);
+    const glm::dvec4 values(instance.world_from_local[static_cast<size_t>(row)]);
     x_[row] = values.x, y_[row] = values.y, z_[row] = values.z, origin_[row] = values.w;
   }
 }
@@ -101,23 +101,23 @@ void bin_separate(const PlacedBatch& placed, const Grid& grid, VoxelBlock& block
     block.pieces.push_back(piece);
     return;
   }
-  thread_local std::vector<std::uint64_t> entries;  // cell and triangle, to be sorted
+  thread_local std::vector<uint64_t> entries;  // cell and triangle, to be sorted
   entries.clear();
-  for (std::uint32_t t = 0; t < placed.triangle_count(); ++t) {
+  for (uint32_t t = 0; t < placed.triangle_count(); ++t) {
     const Overlaps overlaps = overlaps_of(placed.triangle_ws(t), grid, slack);
-    if (overlaps.count > most_cells) entries.push_back(std::uint64_t{grid.cell_count()} << 32 | t);
+    if (overlaps.count > most_cells) entries.push_back(uint64_t{grid.cell_count()} << 32 | t);
     for (int i = 0; i < overlaps.count && overlaps.count <= most_cells; ++i) {
-      entries.push_back(std::uint64_t{overlaps.cells[static_cast<std::size_t>(i)]} << 32 | t);
+      entries.push_back(uint64_t{overlaps.cells[static_cast<size_t>(i)]} << 32 | t);
     }
   }
   std::sort(entries.begin(), entries.end());
-  for (std::size_t i = 0; i < entries.size();) {
-    piece.cell = static_cast<std::uint32_t>(entries[i] >> 32);
-    piece.first_number = static_cast<std::uint32_t>(block.numbers.size());
+  for (size_t i = 0; i < entries.size();) {
+    piece.cell = static_cast<uint32_t>(entries[i] >> 32);
+    piece.first_number = static_cast<uint32_t>(block.numbers.size());
     for (; i < entries.size() && entries[i] >> 32 == piece.cell; ++i) {
-      block.numbers.push_back(static_cast<std::uint16_t>(entries[i]));
+      block.numbers.push_back(static_cast<uint16_t>(entries[i]));
     }
-    piece.triangle_count = static_cast<std::uint32_t>(block.numbers.size()) - piece.first_number;
+    piece.triangle_count = static_cast<uint32_t>(block.numbers.size()) - piece.first_number;
     block.pieces.push_back(piece);
   }
 }

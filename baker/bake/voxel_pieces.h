@@ -13,19 +13,19 @@
 namespace chandelier::baker {
 
 struct VoxelPiece {
-  std::uint32_t cell = 0;  // the grid's count of cells: no cell, always drawn
-  std::uint32_t batch_instance = 0;
-  std::uint32_t triangle_count = 0;
-  std::uint32_t block = 0;         // whose arrays the rest points into
-  std::uint32_t first_number = 0;  // pack::none: the whole batch
-  std::uint32_t first_vertex = 0;  // clipped only
-  std::uint32_t vertex_count = 0;
+  uint32_t cell = 0;  // the grid's count of cells: no cell, always drawn
+  uint32_t batch_instance = 0;
+  uint32_t triangle_count = 0;
+  uint32_t block = 0;         // whose arrays the rest points into
+  uint32_t first_number = 0;  // pack::none: the whole batch
+  uint32_t first_vertex = 0;  // clipped only
+  uint32_t vertex_count = 0;
 };
 
 /// The pieces of some batch instances in a row; blocks are what threads work on.
 struct VoxelBlock {
   std::vector<VoxelPiece> pieces;
-  std::vector<std::uint16_t> numbers;       // separate: triangles of the batch; clipped: corners, from first_vertex on
+  std::vector<uint16_t> numbers;            // separate: triangles of the batch; clipped: corners, from first_vertex on
   std::vector<pack::VoxelVertex> vertices;  // clipped only
   double input_area_m2 = 0;                 // clipped only
   double clipped_area_m2 = 0;
@@ -34,18 +34,18 @@ struct VoxelBlock {
 /// A batch in its place, in double precision.
 class PlacedBatch {
  public:
-  PlacedBatch(const pack::Contents& pack, std::uint32_t batch_instance);
+  PlacedBatch(const pack::Contents& pack, uint32_t batch_instance);
 
   const pack::Contents& pack;
-  const std::uint32_t batch_instance;
+  const uint32_t batch_instance;
   const pack::Batch& batch;
   const pack::Instance& instance;
 
-  std::uint32_t triangle_count() const { return batch.index_count / 3; }
-  std::uint32_t vertex(std::uint32_t triangle, std::uint32_t corner) const {
+  uint32_t triangle_count() const { return batch.index_count / 3; }
+  uint32_t vertex(uint32_t triangle, uint32_t corner) const {
     return pack.indices[batch.first_index + 3 * triangle + corner].vertex;
   }
-  Triangle triangle_ws(std::uint32_t triangle) const {
+  Triangle triangle_ws(uint32_t triangle) const {
     return {corner_ws(triangle, 0), corner_ws(triangle, 1), corner_ws(triangle, 2)};
   }
   /// No corner of triangle_ws is farther than this from where it is, along each axis, nor is Grid's about_cell_of more
@@ -53,7 +53,7 @@ class PlacedBatch {
   double slack_m(const Grid& grid) const;
 
  private:
-  glm::dvec3 corner_ws(std::uint32_t triangle, std::uint32_t corner) const {
+  glm::dvec3 corner_ws(uint32_t triangle, uint32_t corner) const {
     const glm::dvec3 p(pack.positions[vertex(triangle, corner)].position_ls);
     return x_ * p.x + y_ * p.y + z_ * p.z + origin_;
   }

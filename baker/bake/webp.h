@@ -10,9 +10,9 @@
 namespace chandelier::baker {
 
 /// A copy whose header denies alpha, so that it decodes to its colours alone.
-std::vector<std::uint8_t> webp_without_alpha(const std::vector<std::uint8_t>& bytes);
+std::vector<uint8_t> webp_without_alpha(const std::vector<uint8_t>& bytes);
 
 /// As its first chunk claims it.
-ClaimedSize webp_size(const std::vector<std::uint8_t>& bytes);
+ClaimedSize webp_size(const std::vector<uint8_t>& bytes);
 
 }  // namespace chandelier::baker

@@ -10,9 +10,9 @@ namespace chandelier::baker {
 namespace {
 
 template <typename Record>
-std::uint32_t hash_of(const Record& record) {
-  static_assert(sizeof(Record) % sizeof(std::uint32_t) == 0);
-  std::uint32_t words[sizeof(Record) / sizeof(std::uint32_t)];
+uint32_t hash_of(const Record& record) {
+  static_assert(sizeof(Record) % sizeof(uint32_t) == 0);
+  uint32_t words[sizeof(Record) / sizeof(uint32_t)];
   std::memcpy(words, &record, sizeof(Record));
   return hash_words(words, std::size(words));
 }
@@ -28,16 +28,14 @@ void weld_any(AnyPrimitive& primitive) {
   auto& vertices = primitive.vertices;
   auto& skin = primitive.skin_vertices;
   const bool skinned = !skin.empty();
-  std::vector<std::uint32_t> number = first_equal(
+  std::vector<uint32_t> number = first_equal(
       vertices.size(),
-      [&](std::size_t i) {
+      [&](size_t i) {
         return skinned ? hash_of(vertices[i]) ^ (hash_of(skin[i]) * 0x9E3779B1u) : hash_of(vertices[i]);
       },
-      [&](std::size_t i, std::size_t j) {
-        return same(vertices[i], vertices[j]) && (!skinned || same(skin[i], skin[j]));
-      });
-  std::uint32_t kept = 0;
-  for (std::size_t i = 0; i < number.size(); ++i) {
+      [&](size_t i, size_t j) { return same(vertices[i], vertices[j]) && (!skinned || same(skin[i], skin[j])); });
+  uint32_t kept = 0;
+  for (size_t i = 0; i < number.size(); ++i) {
     if (number[i] < i) {
       number[i] = number[number[i]];  // the first one's, which has its new number already
       continue;
@@ -48,7 +46,7 @@ void weld_any(AnyPrimitive& primitive) {
   }
   vertices.resize(kept);
   if (skinned) skin.resize(kept);
-  for (std::uint32_t& index : primitive.indices) index = number[index];
+  for (uint32_t& index : primitive.indices) index = number[index];
 }
 
 }  // namespace

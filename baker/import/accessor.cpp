@@ -13,7 +13,7 @@ namespace chandelier::baker {
 namespace {
 
 template <typename T>
-T value_at(const std::uint8_t* bytes) {
+T value_at(const uint8_t* bytes) {
   T value;
   std::memcpy(&value, bytes, sizeof(T));
   return value;
@@ -23,7 +23,7 @@ T value_at(const std::uint8_t* bytes) {
 template <typename T>
 float to_float(T value, bool normalized) {
   if constexpr (std::is_same_v<T, float>) return value;
-  if constexpr (std::is_same_v<T, std::uint32_t>) {
+  if constexpr (std::is_same_v<T, uint32_t>) {
     return static_cast<float>(normalized ? static_cast<double>(value) / 4294967295.0 : static_cast<double>(value));
   } else {
     const auto v = static_cast<float>(value);
@@ -33,39 +33,39 @@ float to_float(T value, bool normalized) {
 }
 
 template <typename T>
-void convert(const Elements& elements, std::size_t first, std::size_t count, float* out) {
-  const std::uint8_t* from = elements.data + first * elements.stride;
-  for (std::size_t i = 0; i < count; ++i, from += elements.stride) {
-    for (std::size_t c = 0; c < elements.components; ++c) {
+void convert(const Elements& elements, size_t first, size_t count, float* out) {
+  const uint8_t* from = elements.data + first * elements.stride;
+  for (size_t i = 0; i < count; ++i, from += elements.stride) {
+    for (size_t c = 0; c < elements.components; ++c) {
       *out++ = to_float(value_at<T>(from + c * sizeof(T)), elements.normalized);
     }
   }
 }
 
-void convert_floats(const Elements& elements, std::size_t first, std::size_t count, float* out) {
-  const std::size_t bytes = elements.components * sizeof(float);
-  const std::uint8_t* from = elements.data + first * elements.stride;
+void convert_floats(const Elements& elements, size_t first, size_t count, float* out) {
+  const size_t bytes = elements.components * sizeof(float);
+  const uint8_t* from = elements.data + first * elements.stride;
   if (elements.stride == bytes) {
     std::memcpy(out, from, count * bytes);
     return;
   }
-  for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * elements.components, from + i * elements.stride, bytes);
+  for (size_t i = 0; i < count; ++i) std::memcpy(out + i * elements.components, from + i * elements.stride, bytes);
 }
 
 template <typename T>
-void copy_indices(const Elements& elements, std::size_t first, std::size_t count, std::uint32_t* out) {
-  const std::uint8_t* from = elements.data + first * elements.stride;
-  for (std::size_t i = 0; i < count; ++i) out[i] = value_at<T>(from + i * elements.stride);
+void copy_indices(const Elements& elements, size_t first, size_t count, uint32_t* out) {
+  const uint8_t* from = elements.data + first * elements.stride;
+  for (size_t i = 0; i < count; ++i) out[i] = value_at<T>(from + i * elements.stride);
 }
 
-std::uint32_t index_at(const std::uint8_t* bytes, int type) {
+uint32_t index_at(const uint8_t* bytes, int type) {
   switch (component_size(type)) {
     case 1:
       return *bytes;
     case 2:
-      return value_at<std::uint16_t>(bytes);
+      return value_at<uint16_t>(bytes);
     default:
-      return value_at<std::uint32_t>(bytes);
+      return value_at<uint32_t>(bytes);
   }
 }
 
@@ -78,8 +78,8 @@ void need_unsigned(int type, const std::string& where) {
 }
 
 /// The bytes of `count` elements `stride` bytes apart in a buffer view.
-std::span<const std::uint8_t> element_bytes(const Gltf& gltf, int view, std::uint64_t offset, std::uint64_t count,
-                                            std::uint64_t stride, std::uint64_t element, const std::string& where) {
+std::span<const uint8_t> element_bytes(const Gltf& gltf, int view, uint64_t offset, uint64_t count, uint64_t stride,
+                                       uint64_t element, const std::string& where) {
   const auto bytes = view_bytes(gltf, view, where);
   if (count == 0) return {};
   if (stride < element) {
@@ -98,47 +98,45 @@ std::span<const std::uint8_t> element_bytes(const Gltf& gltf, int view, std::uin
 }
 
 /// Copies the elements together and puts sparse values in their places.
-void gather(const Gltf& gltf, const tinygltf::Accessor& accessor, std::size_t element, const std::string& where,
+void gather(const Gltf& gltf, const tinygltf::Accessor& accessor, size_t element, const std::string& where,
             Elements& out) {
-  constexpr std::size_t most_zeros = std::size_t{1} << 22;  // a few bytes of a file can ask for any number
+  constexpr size_t most_zeros = size_t{1} << 22;  // a few bytes of a file can ask for any number
   if (!out.data && accessor.count > most_zeros) {
     fail(where, "accessor without a buffer view has more than " + std::to_string(most_zeros) + " elements (" +
                     std::to_string(accessor.count) + ")");
   }
   out.own.resize(accessor.count * element);
-  for (std::size_t i = 0; out.data && i < out.count; ++i) {
+  for (size_t i = 0; out.data && i < out.count; ++i) {
     std::memcpy(out.own.data() + i * element, out.data + i * out.stride, element);
   }
   out.data = out.own.data();
   out.stride = element;
   if (!accessor.sparse.isSparse) return;
   const auto& sparse = accessor.sparse;
-  const auto count = static_cast<std::size_t>(sparse.count);
-  const std::size_t index_size = component_size(sparse.indices.componentType);
+  const auto count = static_cast<size_t>(sparse.count);
+  const size_t index_size = component_size(sparse.indices.componentType);
   need_unsigned(sparse.indices.componentType, where + ", sparse indices");
-  const auto indices =
-      element_bytes(gltf, sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
-                    index_size, index_size, where + ", sparse indices");
-  const auto values =
-      element_bytes(gltf, sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count,
-                    element, element, where + ", sparse values");
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t at = index_at(indices.data() + i * index_size, sparse.indices.componentType);
+  const auto indices = element_bytes(gltf, sparse.indices.bufferView, static_cast<uint64_t>(sparse.indices.byteOffset),
+                                     count, index_size, index_size, where + ", sparse indices");
+  const auto values = element_bytes(gltf, sparse.values.bufferView, static_cast<uint64_t>(sparse.values.byteOffset),
+                                    count, element, element, where + ", sparse values");
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t at = index_at(indices.data() + i * index_size, sparse.indices.componentType);
     if (at >= accessor.count) fail(where + ", sparse indices", "index is out of range (" + std::to_string(at) + ")");
     std::memcpy(out.own.data() + at * element, values.data() + i * element, element);
   }
 }
 
-Elements open_elements(const Gltf& gltf, const tinygltf::Accessor& accessor, std::size_t components,
+Elements open_elements(const Gltf& gltf, const tinygltf::Accessor& accessor, size_t components,
                        const std::string& where) {
   Elements out;
   out.count = accessor.count;
   out.components = components;
   out.component_type = accessor.componentType;
   out.normalized = accessor.normalized;
-  const std::size_t element = components * component_size(accessor.componentType);
+  const size_t element = components * component_size(accessor.componentType);
   if (accessor.bufferView >= 0) {
-    const auto& view = gltf.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+    const auto& view = gltf.model.bufferViews[static_cast<size_t>(accessor.bufferView)];
     out.stride = view.byteStride ? view.byteStride : element;
     out.data = element_bytes(gltf, accessor.bufferView, accessor.byteOffset, accessor.count, out.stride, element, where)
                    .data();
@@ -149,7 +147,7 @@ Elements open_elements(const Gltf& gltf, const tinygltf::Accessor& accessor, std
 
 }  // namespace
 
-std::size_t component_size(int type) {
+size_t component_size(int type) {
   switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
@@ -163,8 +161,8 @@ std::size_t component_size(int type) {
 }
 
 const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int index, const std::string& where) {
-  const tinygltf::Accessor& accessor = gltf.model.accessors[static_cast<std::size_t>(index)];
-  if (accessor.sparse.isSparse && static_cast<std::uint64_t>(accessor.sparse.count) > accessor.count) {
+  const tinygltf::Accessor& accessor = gltf.model.accessors[static_cast<size_t>(index)];
+  if (accessor.sparse.isSparse && static_cast<uint64_t>(accessor.sparse.count) > accessor.count) {
     fail(where, "more sparse elements than elements (" + std::to_string(accessor.sparse.count) + ")");
   }
   if (accessor.bufferView >= 0) {  // before anything is allocated for it
@@ -177,13 +175,13 @@ const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int index, const st
   return accessor;
 }
 
-Elements elements_of(const Gltf& gltf, int index, std::size_t least, std::size_t most, const std::string& where) {
+Elements elements_of(const Gltf& gltf, int index, size_t least, size_t most, const std::string& where) {
   const tinygltf::Accessor& accessor = checked_accessor(gltf, index, where);
   const bool vector = accessor.type == TINYGLTF_TYPE_SCALAR ||
                       (accessor.type >= TINYGLTF_TYPE_VEC2 && accessor.type <= TINYGLTF_TYPE_VEC4);
-  const std::size_t components =
+  const size_t components =
       accessor.type == TINYGLTF_TYPE_MAT4 ? 16
-      : vector ? static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)))
+      : vector ? static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)))
                : 0;
   if (components < least || components > most) {
     fail(where,
@@ -192,39 +190,39 @@ Elements elements_of(const Gltf& gltf, int index, std::size_t least, std::size_t
   return open_elements(gltf, accessor, components, where);
 }
 
-std::size_t to_floats(const Elements& elements, std::size_t first, std::size_t count, float* out) {
+size_t to_floats(const Elements& elements, size_t first, size_t count, float* out) {
   switch (elements.component_type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-      convert<std::int8_t>(elements, first, count, out);
+      convert<int8_t>(elements, first, count, out);
       break;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      convert<std::uint8_t>(elements, first, count, out);
+      convert<uint8_t>(elements, first, count, out);
       break;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-      convert<std::int16_t>(elements, first, count, out);
+      convert<int16_t>(elements, first, count, out);
       break;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      convert<std::uint16_t>(elements, first, count, out);
+      convert<uint16_t>(elements, first, count, out);
       break;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      convert<std::uint32_t>(elements, first, count, out);
+      convert<uint32_t>(elements, first, count, out);
       break;
     default:
       convert_floats(elements, first, count, out);
   }
-  const std::size_t values = count * elements.components;
-  std::uint32_t bad = 0;  // no branch: the compiler makes vectors of it
-  for (std::size_t i = 0; i < values; ++i) {
-    const auto bits = std::bit_cast<std::uint32_t>(out[i]);
-    bad |= std::uint32_t{(bits & 0x7F800000u) == 0x7F800000u};
+  const size_t values = count * elements.components;
+  uint32_t bad = 0;  // no branch: the compiler makes vectors of it
+  for (size_t i = 0; i < values; ++i) {
+    const auto bits = std::bit_cast<uint32_t>(out[i]);
+    bad |= uint32_t{(bits & 0x7F800000u) == 0x7F800000u};
   }
   if (!bad) return SIZE_MAX;
-  for (std::size_t i = 0;; ++i) {
+  for (size_t i = 0;; ++i) {
     if (!std::isfinite(out[i])) return first + i / elements.components;
   }
 }
 
-void fail_not_finite(const Elements& elements, std::size_t element, const std::string& where) {
+void fail_not_finite(const Elements& elements, size_t element, const std::string& where) {
   std::vector<float> values(elements.components);
   to_floats(elements, element, 1, values.data());
   for (const float value : values) {
@@ -235,33 +233,31 @@ void fail_not_finite(const Elements& elements, std::size_t element, const std::s
   fail(where, "value is not finite");
 }
 
-Floats read_floats(const Gltf& gltf, int index, std::size_t least_components, std::size_t most_components,
+Floats read_floats(const Gltf& gltf, int index, size_t least_components, size_t most_components,
                    const std::string& where) {
   const Elements elements = elements_of(gltf, index, least_components, most_components, where);
   Floats out{elements.count, elements.components, std::vector<float>(elements.count * elements.components)};
-  const std::size_t bad = to_floats(elements, 0, elements.count, out.values.data());
+  const size_t bad = to_floats(elements, 0, elements.count, out.values.data());
   if (bad != SIZE_MAX) fail_not_finite(elements, bad, where);
   return out;
 }
 
-std::vector<std::uint32_t> read_indices(const Gltf& gltf, int index, std::uint64_t end, const std::string& where) {
+std::vector<uint32_t> read_indices(const Gltf& gltf, int index, uint64_t end, const std::string& where) {
   const tinygltf::Accessor& accessor = checked_accessor(gltf, index, where);
   if (accessor.type != TINYGLTF_TYPE_SCALAR) fail(where, "accessor " + std::to_string(index) + " is not SCALAR");
   need_unsigned(accessor.componentType, where);
   const Elements elements = open_elements(gltf, accessor, 1, where);
-  std::vector<std::uint32_t> out(elements.count);
+  std::vector<uint32_t> out(elements.count);
   FirstFault fault;
-  for_blocks(out.size(), [&](std::size_t first, std::size_t count) {
-    const std::size_t size = component_size(elements.component_type);
-    const auto copy = size == 1   ? copy_indices<std::uint8_t>
-                      : size == 2 ? copy_indices<std::uint16_t>
-                                  : copy_indices<std::uint32_t>;
+  for_blocks(out.size(), [&](size_t first, size_t count) {
+    const size_t size = component_size(elements.component_type);
+    const auto copy = size == 1 ? copy_indices<uint8_t> : size == 2 ? copy_indices<uint16_t> : copy_indices<uint32_t>;
     copy(elements, first, count, out.data() + first);
-    std::uint32_t largest = 0;
-    for (std::size_t i = first; i < first + count; ++i) largest = std::max(largest, out[i]);
+    uint32_t largest = 0;
+    for (size_t i = first; i < first + count; ++i) largest = std::max(largest, out[i]);
     if (largest < end) return;
-    fault.note(static_cast<std::size_t>(
-        std::find_if(out.begin() + first, out.end(), [&](std::uint32_t value) { return value >= end; }) - out.begin()));
+    fault.note(static_cast<size_t>(
+        std::find_if(out.begin() + first, out.end(), [&](uint32_t value) { return value >= end; }) - out.begin()));
   });
   if (fault.at() != SIZE_MAX) {
     fail(where, "index is out of range, there are " + std::to_string(end) + " vertices (" +
@@ -270,20 +266,19 @@ std::vector<std::uint32_t> read_indices(const Gltf& gltf, int index, std::uint64
   return out;
 }
 
-void for_blocks(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
-  constexpr std::size_t block_size =
-      1024;                            // of vertices: 60 KiB, which caches hold while each attribute passes over them
-  constexpr std::size_t at_once = 16;  // blocks that one thread takes
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (count + block_size - 1) / block_size, at_once),
+void for_blocks(size_t count, const std::function<void(size_t, size_t)>& work) {
+  constexpr size_t block_size = 1024;  // of vertices: 60 KiB, which caches hold while each attribute passes over them
+  constexpr size_t at_once = 16;       // blocks that one thread takes
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, (count + block_size - 1) / block_size, at_once),
                     [&](const auto& range) {
-                      for (std::size_t block = range.begin(); block < range.end(); ++block) {
+                      for (size_t block = range.begin(); block < range.end(); ++block) {
                         work(block * block_size, std::min(block_size, count - block * block_size));
                       }
                     });
 }
 
-void FirstFault::note(std::size_t at) {
-  std::size_t seen = at_.load();
+void FirstFault::note(size_t at) {
+  size_t seen = at_.load();
   while (at < seen && !at_.compare_exchange_weak(seen, at)) {
   }
 }

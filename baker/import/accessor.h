@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 
 #include "gltf.h"
@@ -15,49 +16,49 @@ const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int accessor, const
 /// An accessor's elements: where they lie in a buffer, or in `own` where there is no such place. Each of the `count`
 /// elements at `data + i * stride` has `components` values of `component_type` that may be read.
 struct Elements {
-  const std::uint8_t* data = nullptr;
-  std::size_t stride = 0;
-  std::size_t count = 0;
-  std::size_t components = 0;
+  const uint8_t* data = nullptr;
+  size_t stride = 0;
+  size_t count = 0;
+  size_t components = 0;
   int component_type = 0;
   bool normalized = false;
-  std::vector<std::uint8_t> own;  // sparse data, data without a buffer view, data from a decoder
+  std::vector<uint8_t> own;  // sparse data, data without a buffer view, data from a decoder
 };
 
-std::size_t component_size(int component_type);
+size_t component_size(int component_type);
 
 /// Vectors of `least` to `most` components, or matrices where both are 16. Throws Error.
-Elements elements_of(const Gltf& gltf, int accessor, std::size_t least, std::size_t most, const std::string& where);
+Elements elements_of(const Gltf& gltf, int accessor, size_t least, size_t most, const std::string& where);
 
 /// Converts `count` elements from `first`, tightly, normalized integers mapped to 0..1 or -1..1. Returns the number of
 /// the first element among all that is not finite, or SIZE_MAX.
-std::size_t to_floats(const Elements& elements, std::size_t first, std::size_t count, float* out);
+size_t to_floats(const Elements& elements, size_t first, size_t count, float* out);
 
-[[noreturn]] void fail_not_finite(const Elements& elements, std::size_t element, const std::string& where);
+[[noreturn]] void fail_not_finite(const Elements& elements, size_t element, const std::string& where);
 
 /// All of them. Throws Error where a value is not finite.
 struct Floats {
-  std::size_t count = 0;
-  std::size_t components = 0;
+  size_t count = 0;
+  size_t components = 0;
   std::vector<float> values;
 };
-Floats read_floats(const Gltf& gltf, int accessor, std::size_t least_components, std::size_t most_components,
+Floats read_floats(const Gltf& gltf, int accessor, size_t least_components, size_t most_components,
                    const std::string& where);
 
 /// Unsigned integers of a scalar accessor, each below `end`. Throws Error.
-std::vector<std::uint32_t> read_indices(const Gltf& gltf, int accessor, std::uint64_t end, const std::string& where);
+std::vector<uint32_t> read_indices(const Gltf& gltf, int accessor, uint64_t end, const std::string& where);
 
 /// Calls `work(first, count)` for blocks of `count` items, side by side where there are many.
-void for_blocks(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
+void for_blocks(size_t count, const std::function<void(size_t, size_t)>& work);
 
 /// The first number that a block reports, in the order of numbers and not of time; SIZE_MAX: none.
 class FirstFault {
  public:
-  void note(std::size_t at);
-  std::size_t at() const { return at_.load(); }
+  void note(size_t at);
+  size_t at() const { return at_.load(); }
 
  private:
-  std::atomic<std::size_t> at_{SIZE_MAX};
+  std::atomic<size_t> at_{SIZE_MAX};
 };
 
 }  // namespace chandelier::baker

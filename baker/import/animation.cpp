@@ -10,16 +10,16 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t most_values = 1ull << 28;  // of all animations: channels can share one accessor
+constexpr uint64_t most_values = 1ull << 28;  // of all animations: channels can share one accessor
 
 std::vector<float> read_times(const Gltf& gltf, int accessor, const std::string& where) {
-  if (gltf.model.accessors[static_cast<std::size_t>(accessor)].componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+  if (gltf.model.accessors[static_cast<size_t>(accessor)].componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
     fail(where, "component type is not float");
   }
   std::vector<float> times = read_floats(gltf, accessor, 1, 1, where).values;
   if (times.empty()) fail(where, "has no keys");
   if (times[0] < 0) fail(where, "a key is before the start (" + to_text(times[0]) + " s)");
-  for (std::size_t i = 1; i < times.size(); ++i) {
+  for (size_t i = 1; i < times.size(); ++i) {
     if (times[i] > times[i - 1]) continue;
     fail(where, "times do not ascend (" + to_text(times[i]) + " s at key " + std::to_string(i) + ")");
   }
@@ -37,7 +37,7 @@ bool normalize_rotations(AnimationChannel& channel, const std::string& where) {
   constexpr double rounding = 0.01;  // 8-bit components
   const bool cubic = channel.interpolation == Interpolation::cubic_spline;
   bool off = false;
-  for (std::size_t key = 0; key < channel.times_s.size(); ++key) {
+  for (size_t key = 0; key < channel.times_s.size(); ++key) {
     float* q = channel.values.data() + (cubic ? 12 * key + 4 : 4 * key);  // the value between its tangents
     const double length =
         std::sqrt(double{q[0]} * q[0] + double{q[1]} * q[1] + double{q[2]} * q[2] + double{q[3]} * q[3]);
@@ -64,12 +64,12 @@ AnimationChannel read_channel(const Gltf& gltf, const Json& sampler, AnimationPa
   const bool cubic = out.interpolation == Interpolation::cubic_spline;
   if (cubic && out.times_s.size() < 2) fail(where + ", input", "a cubic spline has fewer than two keys (1)");
   const auto output = sampler["output"].get<int>();
-  if (!may_hold(path, gltf.model.accessors[static_cast<std::size_t>(output)])) {
+  if (!may_hold(path, gltf.model.accessors[static_cast<size_t>(output)])) {
     fail(where + ", output", "component type does not suit its path");
   }
-  const std::size_t components = path == AnimationPath::rotation ? 4 : 3;
+  const size_t components = path == AnimationPath::rotation ? 4 : 3;
   Floats values = read_floats(gltf, output, components, components, where + ", output");
-  const std::size_t expected = out.times_s.size() * (cubic ? 3 : 1);
+  const size_t expected = out.times_s.size() * (cubic ? 3 : 1);
   if (values.count != expected) {
     fail(where + ", output", "has another count than its keys ask for, " + std::to_string(expected) + " (" +
                                  std::to_string(values.count) + ")");
@@ -84,7 +84,7 @@ AnimationChannel read_channel(const Gltf& gltf, const Json& sampler, AnimationPa
 /// Whether nobody has said when and where its keys are: an accessor without a buffer view is all zeros.
 bool lacks_data(const Gltf& gltf, const Json& sampler) {
   const auto lacks = [&](const char* key) {
-    const tinygltf::Accessor& accessor = gltf.model.accessors[sampler[key].get<std::size_t>()];
+    const tinygltf::Accessor& accessor = gltf.model.accessors[sampler[key].get<size_t>()];
     return accessor.bufferView < 0 && !accessor.sparse.isSparse;
   };
   return lacks("input") || lacks("output");
@@ -105,7 +105,7 @@ std::string pointer_of(const Json& target) {
 }
 
 Animation read_animation(const Gltf& gltf, const Json& json, const std::string& here,
-                         const std::vector<std::uint8_t>& in_scene, std::uint64_t& values, Warnings& warnings) {
+                         const std::vector<uint8_t>& in_scene, uint64_t& values, Warnings& warnings) {
   Animation out;
   out.name = json.value("name", "");
   for (const Json& channel : json["channels"]) {
@@ -120,9 +120,9 @@ Animation read_animation(const Gltf& gltf, const Json& json, const std::string& 
     if (!path) warnings.add(gltf.file, here, "animation of something else than a node's place is skipped", name);
     if (!target.contains("node")) warnings.add(gltf.file, here, "a channel without a node is skipped");
     if (!path || !target.contains("node")) continue;
-    const auto node = target["node"].get<std::uint32_t>();
+    const auto node = target["node"].get<uint32_t>();
     if (!in_scene[node]) continue;
-    const auto sampler = channel["sampler"].get<std::size_t>();
+    const auto sampler = channel["sampler"].get<size_t>();
     if (lacks_data(gltf, json["samplers"][sampler])) {
       warnings.add(gltf.file, here, "a channel whose keys have no data is skipped");
       continue;
@@ -141,12 +141,11 @@ Animation read_animation(const Gltf& gltf, const Json& json, const std::string& 
 
 }  // namespace
 
-std::vector<Animation> read_animations(const Gltf& gltf, const std::vector<std::uint8_t>& in_scene,
-                                       Warnings& warnings) {
+std::vector<Animation> read_animations(const Gltf& gltf, const std::vector<uint8_t>& in_scene, Warnings& warnings) {
   std::vector<Animation> out;
-  std::uint64_t values = 0;
+  uint64_t values = 0;
   const auto animations = gltf.json.find("animations");
-  for (std::size_t i = 0; animations != gltf.json.end() && i < animations->size(); ++i) {
+  for (size_t i = 0; animations != gltf.json.end() && i < animations->size(); ++i) {
     Animation animation =
         read_animation(gltf, (*animations)[i], place(gltf.json, "animations", i), in_scene, values, warnings);
     if (!animation.channels.empty()) out.push_back(std::move(animation));

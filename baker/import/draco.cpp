@@ -13,13 +13,13 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t most_per_byte = 2000;  // triangles and vertices that a byte can stand for
+constexpr uint64_t most_per_byte = 2000;  // triangles and vertices that a byte can stand for
 
 struct Counts {
-  std::uint64_t points = 0, triangles = 0;
+  uint64_t points = 0, triangles = 0;
 };
 
-draco::DecoderBuffer buffer_of(std::span<const std::uint8_t> bytes) {
+draco::DecoderBuffer buffer_of(std::span<const uint8_t> bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return buffer;
@@ -27,7 +27,7 @@ draco::DecoderBuffer buffer_of(std::span<const std::uint8_t> bytes) {
 
 /// The counts in the stream's header (bitstream 2.2, as the extension asks). For an edgebreaker stream, points are the
 /// vertices of its connectivity, which attributes may split.
-Counts claimed_counts(std::span<const std::uint8_t> bytes, const std::string& where) {
+Counts claimed_counts(std::span<const uint8_t> bytes, const std::string& where) {
   draco::DecoderBuffer buffer = buffer_of(bytes);
   draco::DracoHeader header;
   if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) fail(where, "is no Draco stream");
@@ -41,8 +41,8 @@ Counts claimed_counts(std::span<const std::uint8_t> bytes, const std::string& wh
   if ((header.flags & METADATA_FLAG_MASK) && !draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata)) {
     fail(where, "Draco metadata is damaged");
   }
-  std::uint32_t points = 0, triangles = 0;
-  std::uint8_t traversal = 0;
+  uint32_t points = 0, triangles = 0;
+  uint8_t traversal = 0;
   const bool edgebreaker = header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING;
   const bool read = edgebreaker ? buffer.Decode(&traversal) && draco::DecodeVarint(&points, &buffer) &&
                                       draco::DecodeVarint(&triangles, &buffer)
@@ -51,13 +51,13 @@ Counts claimed_counts(std::span<const std::uint8_t> bytes, const std::string& wh
   return {points, triangles};
 }
 
-void need_equal(std::uint64_t decoded, std::uint64_t accessor, const char* what, const std::string& where) {
+void need_equal(uint64_t decoded, uint64_t accessor, const char* what, const std::string& where) {
   if (decoded == accessor) return;
   fail(where, std::string("Draco stream has another number of ") + what + " than its accessors, which have " +
                   std::to_string(accessor) + " (" + std::to_string(decoded) + ")");
 }
 
-std::unique_ptr<draco::Mesh> decode_mesh(std::span<const std::uint8_t> bytes, const std::string& where) {
+std::unique_ptr<draco::Mesh> decode_mesh(std::span<const uint8_t> bytes, const std::string& where) {
   try {
     draco::DecoderBuffer buffer = buffer_of(bytes);
     draco::Decoder decoder;
@@ -92,22 +92,22 @@ int component_type_of(draco::DataType type, const std::string& where) {
   }
 }
 
-Elements read_attribute(const draco::Mesh& mesh, std::uint32_t id, const tinygltf::Accessor& accessor,
+Elements read_attribute(const draco::Mesh& mesh, uint32_t id, const tinygltf::Accessor& accessor,
                         const std::string& where) {
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
   if (!attribute) fail(where, "Draco stream has no such attribute (" + std::to_string(id) + ")");
   Elements out;
-  out.components = static_cast<std::size_t>(attribute->num_components());
+  out.components = static_cast<size_t>(attribute->num_components());
   out.component_type = component_type_of(attribute->data_type(), where);
   out.normalized = accessor.normalized;
   out.count = mesh.num_points();
   out.stride = out.components * component_size(out.component_type);
-  const std::uint64_t stored = attribute->buffer() ? attribute->buffer()->data_size() : 0;
-  if (static_cast<std::uint64_t>(attribute->byte_stride()) != out.stride || stored < attribute->size() * out.stride) {
+  const uint64_t stored = attribute->buffer() ? attribute->buffer()->data_size() : 0;
+  if (static_cast<uint64_t>(attribute->byte_stride()) != out.stride || stored < attribute->size() * out.stride) {
     fail(where, "Draco attribute is damaged");
   }
   out.own.resize(out.count * out.stride);
-  for (std::uint32_t i = 0; i < out.count; ++i) {
+  for (uint32_t i = 0; i < out.count; ++i) {
     const draco::AttributeValueIndex value = attribute->mapped_index(draco::PointIndex(i));
     if (value.value() >= attribute->size()) fail(where, "Draco attribute is damaged");
     attribute->GetValue(value, out.own.data() + i * out.stride);
@@ -135,16 +135,16 @@ DracoPrimitive decode_draco(const Gltf& gltf, const Json& primitive, const std::
                     std::to_string(bytes.size()) + " bytes)");
   }
   const bool strip = primitive.value("mode", TINYGLTF_MODE_TRIANGLES) != TINYGLTF_MODE_TRIANGLES;
-  const std::uint64_t corners = accessors[primitive["indices"].get<std::size_t>()].count;
+  const uint64_t corners = accessors[primitive["indices"].get<size_t>()].count;
   if (!strip) need_equal(claimed.triangles * 3, corners, "triangle corners", where);
   const std::unique_ptr<draco::Mesh> mesh = decode_mesh(bytes, where);
   DracoPrimitive out;
   for (const auto& [name, id] : extension["attributes"].items()) {
-    const tinygltf::Accessor& accessor = accessors[primitive["attributes"][name].get<std::size_t>()];
+    const tinygltf::Accessor& accessor = accessors[primitive["attributes"][name].get<size_t>()];
     need_equal(mesh->num_points(), accessor.count, "vertices", where);
-    out.attributes[name] = read_attribute(*mesh, id.get<std::uint32_t>(), accessor, where + ", attribute " + name);
+    out.attributes[name] = read_attribute(*mesh, id.get<uint32_t>(), accessor, where + ", attribute " + name);
   }
-  out.indices.reserve(std::size_t{mesh->num_faces()} * 3);
+  out.indices.reserve(size_t{mesh->num_faces()} * 3);
   for (draco::FaceIndex face(0); face < mesh->num_faces(); ++face) {
     for (const draco::PointIndex& corner : mesh->face(face)) {
       if (corner.value() >= mesh->num_points()) fail(where, "Draco stream has an index out of range");

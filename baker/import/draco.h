@@ -2,6 +2,7 @@
 // KHR_draco_mesh_compression: compressed primitives.
 #pragma once
 
+#include <cstdint>
 #include <map>
 
 #include "accessor.h"
@@ -10,7 +11,7 @@ namespace chandelier::baker {
 
 struct DracoPrimitive {
   std::map<std::string, Elements> attributes;  // by glTF's names
-  std::vector<std::uint32_t> indices;          // a triangle list
+  std::vector<uint32_t> indices;               // a triangle list
 };
 
 /// The extension's object in a primitive, or nullptr.

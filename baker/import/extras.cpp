@@ -47,11 +47,11 @@ std::optional<double> Extras::number(const char* key, double least, double most)
   return value;
 }
 
-std::optional<std::uint32_t> Extras::integer(const char* key, double least, double most) const {
+std::optional<uint32_t> Extras::integer(const char* key, double least, double most) const {
   const auto value = number(key, least, most);
   if (!value) return std::nullopt;
   if (*value != std::floor(*value)) bad(key, "is not a whole number", json[key]);
-  return static_cast<std::uint32_t>(*value);
+  return static_cast<uint32_t>(*value);
 }
 
 std::optional<Extras> extras_of(const Gltf& gltf, const Json& owner, const std::string& here,
@@ -69,7 +69,7 @@ std::optional<Extras> extras_of(const Gltf& gltf, const Json& owner, const std::
   return extras;
 }
 
-bool is_shadowless(const Gltf& gltf, std::size_t number, Warnings& warnings) {
+bool is_shadowless(const Gltf& gltf, size_t number, Warnings& warnings) {
   static const Json::json_pointer light("/extensions/KHR_lights_punctual");
   const Json& node = gltf.json["nodes"][number];
   const std::string here = place(gltf.json, "nodes", number);
@@ -88,7 +88,7 @@ bool is_shadowless(const Gltf& gltf, std::size_t number, Warnings& warnings) {
   return extras && !extras->boolean("shadow").value_or(true);
 }
 
-std::optional<bool> shadow_of_material(const Gltf& gltf, std::size_t number, Warnings& warnings) {
+std::optional<bool> shadow_of_material(const Gltf& gltf, size_t number, Warnings& warnings) {
   const Json& material = gltf.json["materials"][number];
   const auto extras = extras_of(gltf, material, place(gltf.json, "materials", number), shadow, warnings);
   return extras ? extras->boolean("shadow") : std::nullopt;

@@ -3,6 +3,7 @@
 // (shadow_extras.schema.json).
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -21,7 +22,7 @@ struct Extras {
   std::optional<std::string> text(const char* key) const;
   std::optional<double> number(const char* key, double least, double most) const;
   /// JSON Schema's integer: 128.0 is one.
-  std::optional<std::uint32_t> integer(const char* key, double least, double most) const;
+  std::optional<uint32_t> integer(const char* key, double least, double most) const;
 
   [[noreturn]] void bad(const char* key, const char* what, const Json& value) const;
 };
@@ -32,9 +33,9 @@ std::optional<Extras> extras_of(const Gltf& gltf, const Json& owner, const std::
                                 std::span<const std::string_view> known, Warnings& warnings);
 
 /// Whether the node's author wants its own mesh to cast no shadow. Children are not affected. Throws Error.
-bool is_shadowless(const Gltf& gltf, std::size_t node, Warnings& warnings);
+bool is_shadowless(const Gltf& gltf, size_t node, Warnings& warnings);
 
 /// Whether the material's author wants it to cast a shadow, if the extras say so. Throws Error.
-std::optional<bool> shadow_of_material(const Gltf& gltf, std::size_t material, Warnings& warnings);
+std::optional<bool> shadow_of_material(const Gltf& gltf, size_t material, Warnings& warnings);
 
 }  // namespace chandelier::baker

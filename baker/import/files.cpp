@@ -26,7 +26,7 @@ int hex_digit(char c) {
 
 std::string percent_decode(const std::string& uri) {
   std::string out;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
+  for (size_t i = 0; i < uri.size(); ++i) {
     if (uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0) {
       out += static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2]));
       i += 2;
@@ -42,10 +42,10 @@ std::string shown_uri(const std::string& uri) {
   return shortened(uri, 80);
 }
 
-std::vector<std::uint8_t> decode_base64(std::string_view text, const std::string& where) {
-  std::vector<std::uint8_t> out;
+std::vector<uint8_t> decode_base64(std::string_view text, const std::string& where) {
+  std::vector<uint8_t> out;
   out.reserve(text.size() / 4 * 3 + 3);
-  std::uint32_t bits = 0;
+  uint32_t bits = 0;
   int have = 0;
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   for (const char c : text) {
@@ -56,18 +56,18 @@ std::vector<std::uint8_t> decode_base64(std::string_view text, const std::string
     if (c == '+' || c == '-') value = 62;
     if (c == '/' || c == '_') value = 63;
     if (value < 0) fail(where, std::string("data URI is not base64 ('") + c + "')");
-    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    bits = bits << 6 | static_cast<uint32_t>(value);
     have += 6;
     if (have >= 8) {
       have -= 8;
-      out.push_back(static_cast<std::uint8_t>(bits >> have));
+      out.push_back(static_cast<uint8_t>(bits >> have));
     }
   }
   return out;
 }
 
-std::vector<std::uint8_t> read_data_uri(const std::string& uri, const std::string& where) {
-  const std::size_t comma = uri.find(',');
+std::vector<uint8_t> read_data_uri(const std::string& uri, const std::string& where) {
+  const size_t comma = uri.find(',');
   if (comma == std::string::npos) fail(where, "data URI has no data (" + shown_uri(uri) + ")");
   const std::string_view header = std::string_view(uri).substr(0, comma);
   const std::string body = percent_decode(uri.substr(comma + 1));
@@ -77,7 +77,7 @@ std::vector<std::uint8_t> read_data_uri(const std::string& uri, const std::strin
 
 /// "http" of "http://…"; empty for a relative reference.
 std::string uri_scheme(const std::string& uri) {
-  const std::size_t end = uri.find_first_of(":/?#");
+  const size_t end = uri.find_first_of(":/?#");
   return end != std::string::npos && end > 0 && uri[end] == ':' ? uri.substr(0, end) : "";
 }
 
@@ -91,8 +91,8 @@ struct Descriptor {
 
 }  // namespace
 
-Bytes bytes_of(std::vector<std::uint8_t>&& data) {
-  const auto owner = std::make_shared<const std::vector<std::uint8_t>>(std::move(data));
+Bytes bytes_of(std::vector<uint8_t>&& data) {
+  const auto owner = std::make_shared<const std::vector<uint8_t>>(std::move(data));
   return {*owner, owner};
 }
 
@@ -107,12 +107,12 @@ Bytes map_file(const std::filesystem::path& path, const std::string& where) {
   if (file.number < 0 || fstat(file.number, &info) != 0) {
     fail(where, "cannot be read: " + std::string(std::strerror(errno)) + " " + name);
   }
-  const auto size = static_cast<std::size_t>(info.st_size);
+  const auto size = static_cast<size_t>(info.st_size);
   if (size == 0) return {};  // cannot be mapped
   void* data = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
   if (data == MAP_FAILED) fail(where, "cannot be read: " + std::string(std::strerror(errno)) + " " + name);
   std::shared_ptr<const void> owner(data, [size](const void* start) { munmap(const_cast<void*>(start), size); });
-  return {{static_cast<const std::uint8_t*>(data), size}, std::move(owner)};
+  return {{static_cast<const uint8_t*>(data), size}, std::move(owner)};
 }
 
 UriTarget resolve_uri(const std::filesystem::path& folder, const std::string& uri, const std::string& where) {

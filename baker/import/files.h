@@ -14,11 +14,11 @@ namespace chandelier::baker {
 
 /// Bytes and their owner.
 struct Bytes {
-  std::span<const std::uint8_t> bytes;
+  std::span<const uint8_t> bytes;
   std::shared_ptr<const void> owner;
 };
 
-Bytes bytes_of(std::vector<std::uint8_t>&& data);
+Bytes bytes_of(std::vector<uint8_t>&& data);
 
 /// A regular file, mapped. Throws Error.
 Bytes map_file(const std::filesystem::path& path, const std::string& where);
@@ -26,7 +26,7 @@ Bytes map_file(const std::filesystem::path& path, const std::string& where);
 /// What a URI beside `folder` names: a file, or the bytes of a data URI.
 struct UriTarget {
   std::filesystem::path file;  // empty for a data URI
-  std::vector<std::uint8_t> data;
+  std::vector<uint8_t> data;
   bool backslashes = false;  // the file was found with / in their place
 };
 

@@ -11,17 +11,17 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t most_geometry_bytes = 1ull << 34;
-constexpr std::uint64_t most_zeros = 1ull << 22;
+constexpr uint64_t most_geometry_bytes = 1ull << 34;
+constexpr uint64_t most_zeros = 1ull << 22;
 
-const Json& json_of(const Gltf& gltf, std::size_t mesh, std::size_t primitive) {
+const Json& json_of(const Gltf& gltf, size_t mesh, size_t primitive) {
   return gltf.json["meshes"][mesh]["primitives"][primitive];
 }
 
 /// Whether a buffer that the primitive needs is one whose data the file does not name: it comes by other ways.
 bool lacks_data(const Gltf& gltf, const tinygltf::Primitive& primitive) {
   const auto lacks = [&](int accessor) {
-    const int view = accessor < 0 ? -1 : gltf.model.accessors[static_cast<std::size_t>(accessor)].bufferView;
+    const int view = accessor < 0 ? -1 : gltf.model.accessors[static_cast<size_t>(accessor)].bufferView;
     return view >= 0 && !is_present(gltf, view);
   };
   for (const auto& [name, accessor] : primitive.attributes) {
@@ -38,12 +38,12 @@ std::string reason_to_skip(const Gltf& gltf, const tinygltf::Primitive& primitiv
   return {};
 }
 
-std::vector<std::uint32_t> corners_of(const VertexSource& source, DracoPrimitive* draco) {
+std::vector<uint32_t> corners_of(const VertexSource& source, DracoPrimitive* draco) {
   if (draco) return std::move(draco->indices);
   if (source.primitive.indices >= 0) {
     return read_indices(source.gltf, source.primitive.indices, source.vertex_count, source.where + ", indices");
   }
-  std::vector<std::uint32_t> corners(fit_u32(source.vertex_count, "vertices"));
+  std::vector<uint32_t> corners(fit_u32(source.vertex_count, "vertices"));
   std::iota(corners.begin(), corners.end(), 0u);
   return corners;
 }
@@ -57,16 +57,16 @@ void read_skin(const VertexSource& source, Primitive& out, std::vector<std::stri
   }
 }
 
-void read_triangles(const Gltf& gltf, std::size_t mesh, std::size_t number, bool skinned,
-                    std::span<const double> morph_weights, const std::string& where, ReadPrimitive& read) {
+void read_triangles(const Gltf& gltf, size_t mesh, size_t number, bool skinned, std::span<const double> morph_weights,
+                    const std::string& where, ReadPrimitive& read) {
   const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
   const Json& json = json_of(gltf, mesh, number);
   std::optional<DracoPrimitive> draco;
   if (draco_of(json)) draco = decode_draco(gltf, json, where + ", KHR_draco_mesh_compression");
-  const std::size_t vertices = gltf.model.accessors[static_cast<std::size_t>(in.attributes.at("POSITION"))].count;
+  const size_t vertices = gltf.model.accessors[static_cast<size_t>(in.attributes.at("POSITION"))].count;
   const VertexSource source{gltf, in, draco ? &*draco : nullptr, where, vertices, morph_weights};
   Primitive out;
-  std::vector<std::uint32_t> corners = corners_of(source, draco ? &*draco : nullptr);
+  std::vector<uint32_t> corners = corners_of(source, draco ? &*draco : nullptr);
   const int mode = draco ? TINYGLTF_MODE_TRIANGLES : in.mode;
   if (mode == TINYGLTF_MODE_TRIANGLES && corners.size() % 3 != 0) {
     read.warnings.push_back("has vertices left over after the last whole triangle");
@@ -82,19 +82,19 @@ void read_triangles(const Gltf& gltf, std::size_t mesh, std::size_t number, bool
 
 }  // namespace
 
-std::string place_of_primitive(const Gltf& gltf, std::size_t mesh, std::size_t primitive) {
+std::string place_of_primitive(const Gltf& gltf, size_t mesh, size_t primitive) {
   return place(gltf.json, "meshes", mesh) + ", primitive " + std::to_string(primitive);
 }
 
-std::vector<std::uint32_t> triangle_list(int mode, std::vector<std::uint32_t> corners) {
-  const std::size_t n = corners.size();
+std::vector<uint32_t> triangle_list(int mode, std::vector<uint32_t> corners) {
+  const size_t n = corners.size();
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     corners.resize(n / 3 * 3);
     return corners;
   }
-  std::vector<std::uint32_t> out;
+  std::vector<uint32_t> out;
   out.reserve(n < 3 ? 0 : 3 * (n - 2));
-  for (std::size_t i = 0; i + 2 < n; ++i) {  // glTF 2.0, 3.7.2.1: the formulas of the modes
+  for (size_t i = 0; i + 2 < n; ++i) {  // glTF 2.0, 3.7.2.1: the formulas of the modes
     if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
       out.insert(out.end(), {corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
     } else {
@@ -104,7 +104,7 @@ std::vector<std::uint32_t> triangle_list(int mode, std::vector<std::uint32_t> co
   return out;
 }
 
-void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, std::span<const double> morph_weights,
+void add_size(const Gltf& gltf, size_t mesh, size_t number, std::span<const double> morph_weights,
               GeometrySize& total) {
   const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
   const std::string where = gltf.file + ": " + place_of_primitive(gltf, mesh, number);
@@ -113,16 +113,16 @@ void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, std::span<
   const auto count = [&](int accessor, const std::string& what, bool compressed) {
     const tinygltf::Accessor& checked = checked_accessor(gltf, accessor, where + ", " + what);
     if (checked.bufferView < 0 && !compressed) total.zeros += checked.count;
-    return std::uint64_t{checked.count};
+    return uint64_t{checked.count};
   };
   for (const auto& [name, accessor] : in.attributes) {
     count(accessor, "attribute " + name, draco && (*draco)["attributes"].contains(name));
   }
-  const std::uint64_t vertices = gltf.model.accessors[static_cast<std::size_t>(in.attributes.at("POSITION"))].count;
-  const std::uint64_t drawn = in.indices >= 0 ? count(in.indices, "indices", draco) : vertices;
-  const std::uint64_t corners = in.mode == TINYGLTF_MODE_TRIANGLES ? drawn : 3 * drawn;
+  const uint64_t vertices = gltf.model.accessors[static_cast<size_t>(in.attributes.at("POSITION"))].count;
+  const uint64_t drawn = in.indices >= 0 ? count(in.indices, "indices", draco) : vertices;
+  const uint64_t corners = in.mode == TINYGLTF_MODE_TRIANGLES ? drawn : 3 * drawn;
   const bool flat = !in.attributes.contains("NORMAL");  // each corner may become a vertex of its own
-  total.bytes += (flat ? vertices + corners : vertices) * sizeof(Vertex) + corners * sizeof(std::uint32_t);
+  total.bytes += (flat ? vertices + corners : vertices) * sizeof(Vertex) + corners * sizeof(uint32_t);
   add_morph_size(gltf, in, morph_weights, where, total.morphed);
   if (total.zeros > most_zeros) {
     fail(where, "accessors without a buffer view have more than " + std::to_string(most_zeros) +
@@ -134,7 +134,7 @@ void add_size(const Gltf& gltf, std::size_t mesh, std::size_t number, std::span<
   }
 }
 
-ReadPrimitive read_primitive(const Gltf& gltf, std::size_t mesh, std::size_t number, bool skinned,
+ReadPrimitive read_primitive(const Gltf& gltf, size_t mesh, size_t number, bool skinned,
                              std::span<const double> morph_weights) {
   const tinygltf::Primitive& in = gltf.model.meshes[mesh].primitives[number];
   ReadPrimitive out;

@@ -47,7 +47,7 @@ void check_gltf(const Json& json, const std::string& file);
 void check_extensions(const Json& json, const std::string& file, Warnings& warnings);
 
 /// "mesh 3 'name'", or "mesh 3" where it has no name. `section` is the glTF array ("meshes").
-std::string place(const Json& json, const char* section, std::size_t index);
+std::string place(const Json& json, const char* section, size_t index);
 
 /// One of glTF's SCALAR to MAT4.
 bool is_accessor_type(const std::string& type);
@@ -63,10 +63,10 @@ void warn_of_buffers(const Gltf& gltf, Warnings& warnings);
 bool is_present(const Gltf& gltf, int buffer_view);
 
 /// The bytes of a buffer view. Throws Error where they are not all there.
-std::span<const std::uint8_t> view_bytes(const Gltf& gltf, int buffer_view, const std::string& where);
+std::span<const uint8_t> view_bytes(const Gltf& gltf, int buffer_view, const std::string& where);
 
 /// Part of a buffer; `what` begins the message where it is not all there. Throws Error.
-std::span<const std::uint8_t> buffer_bytes(const Gltf& gltf, std::size_t buffer, std::uint64_t offset,
-                                           std::uint64_t length, const std::string& what);
+std::span<const uint8_t> buffer_bytes(const Gltf& gltf, size_t buffer, uint64_t offset, uint64_t length,
+                                      const std::string& what);
 
 }  // namespace chandelier::baker

@@ -22,7 +22,7 @@ void check_buffer_view(const Json& root, const Object& view) {
   view.integer("byteLength", 0, largest_byte_count, Need::required);
   view.integer("byteStride", 4, 252);
   const Json* stride = view.find("byteStride");
-  if (stride && stride->get<std::uint64_t>() % 4 != 0) view.bad("byteStride", "is not a multiple of 4", *stride);
+  if (stride && stride->get<uint64_t>() % 4 != 0) view.bad("byteStride", "is not a multiple of 4", *stride);
   check_meshopt_view(root, view);
 }
 
@@ -32,7 +32,7 @@ void check_component_type(const Object& object) {
 }
 
 void check_accessor(const Json& root, const Object& accessor) {
-  const std::size_t views = section_size(root, "bufferViews");
+  const size_t views = section_size(root, "bufferViews");
   accessor.index("bufferView", views);
   accessor.integer("byteOffset", 0, largest_byte_count);
   check_component_type(accessor);
@@ -59,7 +59,7 @@ void check_weights(const Object& object) {
 }
 
 void check_mesh(const Json& root, const Object& mesh) {
-  const std::size_t accessors = section_size(root, "accessors");
+  const size_t accessors = section_size(root, "accessors");
   check_weights(mesh);
   for (const Object& primitive : mesh.objects("primitives", Need::required)) {
     primitive.integer("mode", 0, 6);
@@ -81,7 +81,7 @@ void check_last_row(const Object& node) {
   const Json* matrix = node.find("matrix");
   if (!matrix) return;
   const Json row = {(*matrix)[3], (*matrix)[7], (*matrix)[11], (*matrix)[15]};
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (size_t i = 0; i < 4; ++i) {
     if (std::abs(row[i].get<double>() - (i == 3)) > 1e-6) node.bad("matrix", "its last row is not 0, 0, 0, 1", row);
   }
 }
@@ -213,7 +213,7 @@ void check_section(const Json& root, const Json& owner, const char* section, con
   const auto it = owner.find(section);
   if (it == owner.end()) return;
   if (!it->is_array()) fail(file + ": " + section, "is not an array (" + shown(*it) + ")");
-  for (std::size_t i = 0; i < it->size(); ++i) {
+  for (size_t i = 0; i < it->size(); ++i) {
     if (!(*it)[i].is_object())
       fail(file + ": " + place(owner, section, i), "is not an object (" + shown((*it)[i]) + ")");
     const Object object{(*it)[i], file + ": " + place(owner, section, i)};
@@ -224,13 +224,13 @@ void check_section(const Json& root, const Json& owner, const char* section, con
 
 /// glTF nodes are strict trees: at most one parent each, no cycle; scenes name roots only.
 void check_tree(const Json& json, const std::string& file) {
-  const std::size_t count = section_size(json, "nodes");
-  std::vector<std::size_t> parent(count, count);
-  for (std::size_t i = 0; i < count; ++i) {
+  const size_t count = section_size(json, "nodes");
+  std::vector<size_t> parent(count, count);
+  for (size_t i = 0; i < count; ++i) {
     const auto children = json["nodes"][i].find("children");
     if (children == json["nodes"][i].end()) continue;
     for (const Json& child : *children) {
-      const auto c = child.get<std::size_t>();
+      const auto c = child.get<size_t>();
       if (parent[c] != count) {
         fail(file + ": " + place(json, "nodes", c),
              "has two parents (" + std::to_string(parent[c]) + " and " + std::to_string(i) + ")");
@@ -238,21 +238,21 @@ void check_tree(const Json& json, const std::string& file) {
       parent[c] = i;
     }
   }
-  std::vector<std::uint8_t> clear(count, 0);  // its way up to a root is known to end
-  for (std::size_t i = 0; i < count; ++i) {
-    std::vector<std::size_t> way;
-    std::size_t at = i;
+  std::vector<uint8_t> clear(count, 0);  // its way up to a root is known to end
+  for (size_t i = 0; i < count; ++i) {
+    std::vector<size_t> way;
+    size_t at = i;
     for (; at != count && !clear[at]; at = parent[at]) {
       way.push_back(at);
       if (way.size() > count) fail(file + ": " + place(json, "nodes", i), "is below itself (a cycle of nodes)");
     }
-    for (std::size_t each : way) clear[each] = 1;
+    for (size_t each : way) clear[each] = 1;
   }
-  for (std::size_t i = 0; i < section_size(json, "scenes"); ++i) {
+  for (size_t i = 0; i < section_size(json, "scenes"); ++i) {
     const auto nodes = json["scenes"][i].find("nodes");
     if (nodes == json["scenes"][i].end()) continue;
     for (const Json& node : *nodes) {
-      if (parent[node.get<std::size_t>()] == count) continue;
+      if (parent[node.get<size_t>()] == count) continue;
       fail(file + ": " + place(json, "scenes", i) + ", nodes",
            "names a node that is below another (" + shown(node) + ")");
     }
@@ -261,7 +261,7 @@ void check_tree(const Json& json, const std::string& file) {
 
 }  // namespace
 
-std::string place(const Json& json, const char* section, std::size_t index) {
+std::string place(const Json& json, const char* section, size_t index) {
   static const std::pair<const char*, const char*> singular_names[] = {{"meshes", "mesh"},
                                                                        {"bufferViews", "buffer view"}};
   std::string out = std::string(section).substr(0, std::string(section).size() - 1);

@@ -5,10 +5,10 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t most_count = 0xFFFFFFFEu;
+constexpr uint64_t most_count = 0xFFFFFFFEu;
 
 /// The filter suits the mode and the stride (EXT_meshopt_compression, "Filters").
-void check_filter(const Object& data, bool attributes, std::uint64_t stride) {
+void check_filter(const Object& data, bool attributes, uint64_t stride) {
   data.text("filter");
   const std::string filter = data.json.value("filter", "NONE");
   if (filter == "NONE") return;
@@ -41,22 +41,22 @@ void check_meshopt_view(const Json& root, const Object& view) {
   data.integer("count", 1, most_count, Need::required);
   data.text("mode", Need::required);
   const auto& mode = data.json["mode"].get_ref<const std::string&>();
-  const auto stride = data.json["byteStride"].get<std::uint64_t>(), count = data.json["count"].get<std::uint64_t>();
-  const auto bytes = data.json["byteLength"].get<std::uint64_t>();
+  const auto stride = data.json["byteStride"].get<uint64_t>(), count = data.json["count"].get<uint64_t>();
+  const auto bytes = data.json["byteLength"].get<uint64_t>();
   const bool attributes = mode == "ATTRIBUTES", triangles = mode == "TRIANGLES";
   if (!attributes && !triangles && mode != "INDICES") data.bad("mode", "is unknown", mode);
   if (attributes ? stride % 4 != 0 : stride != 2 && stride != 4)
     data.bad("byteStride", "does not suit its mode", stride);
   if (triangles && count % 3 != 0) data.bad("count", "is not a multiple of 3", count);
   check_filter(data, attributes, stride);
-  if (view.json["byteLength"].get<std::uint64_t>() != stride * count) {
+  if (view.json["byteLength"].get<uint64_t>() != stride * count) {
     data.bad("count", "times byteStride is not the buffer view's byteLength", count);
   }
   if (attributes && view.json.value("byteStride", stride) != stride) {
     data.bad("byteStride", "is not the buffer view's", stride);
   }
   // The least that the encodings need: two bits for 16 bytes of a vertex, a byte for a triangle or for an index.
-  const std::uint64_t least = attributes ? stride * (count / 16 / 4) : triangles ? count / 3 : count;
+  const uint64_t least = attributes ? stride * (count / 16 / 4) : triangles ? count / 3 : count;
   if (bytes < least) data.bad("byteLength", "is too short for its count", bytes);
 }
 
@@ -70,7 +70,7 @@ void check_draco(const Json& root, const Object& primitive) {
     if (!primitive.json["attributes"].contains(name))
       attributes->bad(name.c_str(), "is no attribute of its primitive", value);
   }
-  const std::uint64_t mode = primitive.json.value("mode", std::uint64_t{4});
+  const uint64_t mode = primitive.json.value("mode", uint64_t{4});
   if (mode != 4 && mode != 5) data->bad("bufferView", "compresses another mode than triangles", mode);
   if (!primitive.json.contains("indices")) fail(data->where, "its primitive has no indices");
 }

@@ -8,7 +8,7 @@ namespace chandelier::baker {
 namespace {
 
 void check_channel(const Json& root, const Object& animation, const Object& channel,
-                   std::set<std::pair<std::uint64_t, std::string>>& targets) {
+                   std::set<std::pair<uint64_t, std::string>>& targets) {
   channel.index("sampler", section_size(animation.json, "samplers"), Need::required);
   const auto target = channel.object("target", Need::required);
   target->index("node", section_size(root, "nodes"));
@@ -16,7 +16,7 @@ void check_channel(const Json& root, const Object& animation, const Object& chan
   if (const auto pointer = target->extension("KHR_animation_pointer")) pointer->text("pointer");
   const auto& path = target->json["path"].get_ref<const std::string&>();
   if (!target->json.contains("node")) return;
-  const auto node = target->json["node"].get<std::uint64_t>();
+  const auto node = target->json["node"].get<uint64_t>();
   if (!targets.emplace(node, path).second) target->bad("path", "is animated twice", path);
   const bool moves = path == "translation" || path == "rotation" || path == "scale";
   if (moves && root["nodes"][node].contains("matrix")) target->bad("node", "is animated but has a matrix", node);
@@ -25,7 +25,7 @@ void check_channel(const Json& root, const Object& animation, const Object& chan
 }  // namespace
 
 void check_animation(const Json& root, const Object& animation) {
-  const std::size_t accessors = section_size(root, "accessors");
+  const size_t accessors = section_size(root, "accessors");
   for (const Object& sampler : animation.objects("samplers", Need::required)) {
     sampler.index("input", accessors, Need::required);
     sampler.index("output", accessors, Need::required);
@@ -35,14 +35,14 @@ void check_animation(const Json& root, const Object& animation) {
       sampler.bad("interpolation", "is not LINEAR, STEP or CUBICSPLINE", interpolation);
     }
   }
-  std::set<std::pair<std::uint64_t, std::string>> targets;
+  std::set<std::pair<uint64_t, std::string>> targets;
   for (const Object& channel : animation.objects("channels", Need::required)) {
     check_channel(root, animation, channel, targets);
   }
 }
 
 void check_skin(const Json& root, const Object& skin) {
-  const std::size_t nodes = section_size(root, "nodes");
+  const size_t nodes = section_size(root, "nodes");
   skin.index("skeleton", nodes);
   skin.index("inverseBindMatrices", section_size(root, "accessors"));
   skin.indices("joints", nodes, Need::required);
@@ -50,9 +50,9 @@ void check_skin(const Json& root, const Object& skin) {
   if (joints.empty() || joints.size() > 65535) {
     fail(skin.where + ", joints", "are not 1 to 65535 (" + std::to_string(joints.size()) + ")");
   }
-  std::set<std::uint64_t> seen;
+  std::set<uint64_t> seen;
   for (const Json& joint : joints) {
-    if (!seen.insert(joint.get<std::uint64_t>()).second) skin.bad("joints", "names a node twice", joint);
+    if (!seen.insert(joint.get<uint64_t>()).second) skin.bad("joints", "names a node twice", joint);
   }
 }
 

@@ -87,15 +87,15 @@ Shape root_shape() {
 const Shape root = root_shape();
 
 /// Characters to add, drop or replace (Levenshtein), whatever their case. At most 40 characters each.
-std::size_t distance(std::string_view a, std::string_view b) {
+size_t distance(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
+  std::vector<size_t> row(b.size() + 1);
+  for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
     row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (lower(a[i - 1]) != lower(b[j - 1]));
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t replaced = diagonal + (lower(a[i - 1]) != lower(b[j - 1]));
       diagonal = row[j];
       row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
     }
@@ -107,9 +107,9 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string_view nearest(std::string_view key, const Shape& shape) {
   if (key.size() > 40) return {};
   std::string_view best;
-  std::size_t least = std::max<std::size_t>(2, key.size() / 3) + 1;  // a change of letters at most
+  size_t least = std::max<size_t>(2, key.size() / 3) + 1;  // a change of letters at most
   for (const auto& [known, of] : shape.keys) {
-    const std::size_t far = distance(key, known);
+    const size_t far = distance(key, known);
     if (far < least && far < known.size()) least = far, best = known;
   }
   return best;
@@ -117,11 +117,11 @@ std::string_view nearest(std::string_view key, const Shape& shape) {
 
 struct KeyLint {
   const Lint& lint;
-  std::uint64_t told = 0;
+  uint64_t told = 0;
 
   /// `place`: of the object, or of the one that it is in; empty for the glTF's own.
   void unknown(const std::string& place, std::string_view key, const Shape& shape) {
-    constexpr std::uint64_t most_told = 3;  // names of a warning that are shown
+    constexpr uint64_t most_told = 3;  // names of a warning that are shown
     std::string name = (place.empty() ? "" : place + ": ") + shortened(std::string(key), 40);
     const std::string_view meant = told++ < most_told ? nearest(key, shape) : std::string_view();
     if (!meant.empty()) name += ", is it " + std::string(meant) + "?";
@@ -152,14 +152,14 @@ void lint_keys(const Lint& lint) {
   KeyLint keys{lint};
   keys.walk(lint.json, root, [] { return std::string(); });
   for (const auto& [name, of] : sections) {
-    for (std::size_t i = 0; i < section_size(lint.json, name); ++i) {
+    for (size_t i = 0; i < section_size(lint.json, name); ++i) {
       keys.walk(lint.entry(name, i), of, [&] { return place(lint.json, name, i); });
     }
   }
   const auto lights = lint.json.find("extensions");
   if (lights == lint.json.end() || !lights->contains("KHR_lights_punctual")) return;
   const Json& punctual = (*lights)["KHR_lights_punctual"];
-  for (std::size_t i = 0; i < section_size(punctual, "lights"); ++i) {
+  for (size_t i = 0; i < section_size(punctual, "lights"); ++i) {
     keys.walk(punctual["lights"][i], light, [&] { return place(punctual, "lights", i); });
   }
 }

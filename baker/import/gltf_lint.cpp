@@ -10,7 +10,7 @@ namespace {
 
 template <typename Visit>
 void for_each(const Lint& lint, const char* section, Visit visit) {
-  for (std::size_t i = 0; i < section_size(lint.json, section); ++i) visit(lint.entry(section, i), i);
+  for (size_t i = 0; i < section_size(lint.json, section); ++i) visit(lint.entry(section, i), i);
 }
 
 bool is_one_of(const std::string& text, std::initializer_list<const char*> all) {
@@ -32,16 +32,16 @@ double number_or(const Json& object, const char* key, double otherwise) {
 }
 
 void lint_buffers(const Lint& lint) {
-  for_each(lint, "buffers", [&](const Json& buffer, std::size_t i) {
+  for_each(lint, "buffers", [&](const Json& buffer, size_t i) {
     if (whole(buffer, "byteLength", 1) == 0) lint.say("buffers", i, "it is empty");
     const std::string uri = text_or(buffer, "uri", "");
     const bool known =
         uri.rfind("data:application/octet-stream", 0) == 0 || uri.rfind("data:application/gltf-buffer", 0) == 0;
     if (uri.rfind("data:", 0) == 0 && !known) lint.say("buffers", i, "its data URI is not of a buffer's media type");
   });
-  for_each(lint, "bufferViews", [&](const Json& view, std::size_t i) {
-    const std::uint64_t length = whole(view, "byteLength", 0), offset = whole(view, "byteOffset", 0);
-    const std::uint64_t all = whole(lint.entry("buffers", whole(view, "buffer", 0)), "byteLength", 0);
+  for_each(lint, "bufferViews", [&](const Json& view, size_t i) {
+    const uint64_t length = whole(view, "byteLength", 0), offset = whole(view, "byteOffset", 0);
+    const uint64_t all = whole(lint.entry("buffers", whole(view, "buffer", 0)), "byteLength", 0);
     if (length == 0) lint.say("bufferViews", i, "it is empty");
     if (offset + length > all) lint.say("bufferViews", i, "it ends past its buffer");
     if (!view.contains("byteStride")) return;
@@ -51,10 +51,10 @@ void lint_buffers(const Lint& lint) {
 }
 
 void lint_accessors(const Lint& lint) {
-  for_each(lint, "accessors", [&](const Json& accessor, std::size_t i) {
-    const std::uint64_t type = whole(accessor, "componentType", 0), element = element_bytes(accessor);
-    const std::uint64_t component = type >= 5125 ? 4 : type >= 5122 ? 2 : 1;
-    const std::uint64_t count = whole(accessor, "count", 0), offset = whole(accessor, "byteOffset", 0);
+  for_each(lint, "accessors", [&](const Json& accessor, size_t i) {
+    const uint64_t type = whole(accessor, "componentType", 0), element = element_bytes(accessor);
+    const uint64_t component = type >= 5125 ? 4 : type >= 5122 ? 2 : 1;
+    const uint64_t count = whole(accessor, "count", 0), offset = whole(accessor, "byteOffset", 0);
     if (element == 0) lint.say("accessors", i, "its type is unknown");
     if (type >= 5125 && accessor.value("normalized", false))
       lint.say("accessors", i, "it is normalized but not of small integers");
@@ -68,18 +68,18 @@ void lint_accessors(const Lint& lint) {
     }
     if (!accessor.contains("bufferView") || count == 0) return;
     const Json& view = lint.view_of(accessor);
-    const std::uint64_t stride = whole(view, "byteStride", element), bytes = whole(view, "byteLength", 0);
+    const uint64_t stride = whole(view, "byteStride", element), bytes = whole(view, "byteLength", 0);
     if (offset % component != 0 || (offset + whole(view, "byteOffset", 0)) % component != 0)
       lint.say("accessors", i, "its values are not aligned");
     if (stride < element) lint.say("accessors", i, "its elements overlap");
     const bool fits =
-        offset + element <= bytes && (count - 1) <= (bytes - offset - element) / std::max(stride, std::uint64_t{1});
+        offset + element <= bytes && (count - 1) <= (bytes - offset - element) / std::max(stride, uint64_t{1});
     if (!fits) lint.say("accessors", i, "it ends past its buffer view");
   });
 }
 
 void lint_cameras(const Lint& lint) {
-  for_each(lint, "cameras", [&](const Json& camera, std::size_t i) {
+  for_each(lint, "cameras", [&](const Json& camera, size_t i) {
     if (camera.contains("perspective") && camera.contains("orthographic")) lint.say("cameras", i, "it is of two types");
     const Json& lens = camera[text_or(camera, "type", "perspective")];
     if (number_or(lens, "zfar", HUGE_VAL) <= number_or(lens, "znear", 0))
@@ -89,7 +89,7 @@ void lint_cameras(const Lint& lint) {
 }
 
 void lint_images(const Lint& lint) {
-  for_each(lint, "images", [&](const Json& image, std::size_t i) {
+  for_each(lint, "images", [&](const Json& image, size_t i) {
     const bool by_view = image.contains("bufferView");
     if (by_view == image.contains("uri")) lint.say("images", i, "it has not one source");
     if (by_view && !image.contains("mimeType")) lint.say("images", i, "it has no mimeType");
@@ -97,7 +97,7 @@ void lint_images(const Lint& lint) {
       lint.say("images", i, "its buffer view has a byteStride");
     }
     const std::string uri = text_or(image, "uri", "");
-    const std::size_t colon = uri.find_first_of(":/?#");
+    const size_t colon = uri.find_first_of(":/?#");
     if (colon != std::string::npos && uri[colon] == ':' && uri.rfind("data:image/", 0) != 0) {
       lint.say("images", i, "its URI is neither relative nor image data");
     }
@@ -105,7 +105,7 @@ void lint_images(const Lint& lint) {
 }
 
 void lint_nodes(const Lint& lint) {
-  for_each(lint, "nodes", [&](const Json& node, std::size_t i) {
+  for_each(lint, "nodes", [&](const Json& node, size_t i) {
     const bool parts = node.contains("translation") || node.contains("rotation") || node.contains("scale");
     if (parts && node.contains("matrix")) lint.say("nodes", i, "it has a matrix and its parts: the matrix counts");
     if (!node.contains("mesh") && (node.contains("skin") || node.contains("weights"))) {
@@ -120,7 +120,7 @@ void lint_nodes(const Lint& lint) {
 }
 
 void lint_animations(const Lint& lint) {
-  for_each(lint, "animations", [&](const Json& animation, std::size_t i) {
+  for_each(lint, "animations", [&](const Json& animation, size_t i) {
     for (const Json& sampler : animation["samplers"]) {
       const Json& input = lint.entry("accessors", whole(sampler, "input", 0));
       const Json& output = lint.entry("accessors", whole(sampler, "output", 0));
@@ -135,7 +135,7 @@ void lint_animations(const Lint& lint) {
 }
 
 void lint_materials(const Lint& lint) {
-  for_each(lint, "materials", [&](const Json& material, std::size_t i) {
+  for_each(lint, "materials", [&](const Json& material, size_t i) {
     if (!material.contains("emissiveFactor")) return;
     for (const Json& each : material["emissiveFactor"]) {
       if (each.get<double>() > 1) lint.say("materials", i, "its emissiveFactor is above 1: it is taken as it is");
@@ -145,30 +145,30 @@ void lint_materials(const Lint& lint) {
 
 /// The node above each node, and the one above all of these.
 struct Family {
-  std::vector<std::size_t> parent, root;
+  std::vector<size_t> parent, root;
 };
 
 Family family_of(const Lint& lint) {
-  const std::size_t count = section_size(lint.json, "nodes");
-  Family out{std::vector<std::size_t>(count, SIZE_MAX), std::vector<std::size_t>(count, SIZE_MAX)};
-  for_each(lint, "nodes", [&](const Json& node, std::size_t i) {
+  const size_t count = section_size(lint.json, "nodes");
+  Family out{std::vector<size_t>(count, SIZE_MAX), std::vector<size_t>(count, SIZE_MAX)};
+  for_each(lint, "nodes", [&](const Json& node, size_t i) {
     if (!node.contains("children")) return;
-    for (const Json& child : node["children"]) out.parent[child.get<std::size_t>()] = i;
+    for (const Json& child : node["children"]) out.parent[child.get<size_t>()] = i;
   });
-  for (std::size_t i = 0; i < count; ++i) {
-    std::size_t at = i;
-    std::vector<std::size_t> way;
+  for (size_t i = 0; i < count; ++i) {
+    size_t at = i;
+    std::vector<size_t> way;
     for (; out.root[at] == SIZE_MAX && out.parent[at] != SIZE_MAX; at = out.parent[at]) way.push_back(at);
     if (out.root[at] == SIZE_MAX) out.root[at] = at;
-    for (const std::size_t each : way) out.root[each] = out.root[at];
+    for (const size_t each : way) out.root[each] = out.root[at];
   }
   return out;
 }
 
-bool is_above_all(std::size_t skeleton, const Json& joints, const Family& family) {
-  std::set<std::size_t> below = {skeleton};
+bool is_above_all(size_t skeleton, const Json& joints, const Family& family) {
+  std::set<size_t> below = {skeleton};
   for (const Json& joint : joints) {
-    for (auto at = joint.get<std::size_t>(); !below.contains(at); at = family.parent[at]) {
+    for (auto at = joint.get<size_t>(); !below.contains(at); at = family.parent[at]) {
       if (family.parent[at] == SIZE_MAX) return false;
       below.insert(at);
     }
@@ -179,13 +179,13 @@ bool is_above_all(std::size_t skeleton, const Json& joints, const Family& family
 void lint_skins(const Lint& lint) {
   if (section_size(lint.json, "skins") == 0) return;
   const Family family = family_of(lint);
-  for_each(lint, "skins", [&](const Json& skin, std::size_t i) {
+  for_each(lint, "skins", [&](const Json& skin, size_t i) {
     const Json& joints = skin["joints"];
-    const std::size_t root = family.root[joints[0].get<std::size_t>()];
+    const size_t root = family.root[joints[0].get<size_t>()];
     for (const Json& joint : joints) {
-      if (family.root[joint.get<std::size_t>()] != root) lint.say("skins", i, "its joints have no common root");
+      if (family.root[joint.get<size_t>()] != root) lint.say("skins", i, "its joints have no common root");
     }
-    if (skin.contains("skeleton") && !is_above_all(skin["skeleton"].get<std::size_t>(), joints, family)) {
+    if (skin.contains("skeleton") && !is_above_all(skin["skeleton"].get<size_t>(), joints, family)) {
       lint.say("skins", i, "its skeleton is not above its joints");
     }
     if (!skin.contains("inverseBindMatrices")) return;
@@ -221,17 +221,17 @@ const Json& Lint::view_of(const Json& accessor) const {
   return accessor.contains("bufferView") ? entry("bufferViews", whole(accessor, "bufferView", 0)) : no_members;
 }
 
-std::uint64_t whole(const Json& object, const char* key, std::uint64_t otherwise) {
+uint64_t whole(const Json& object, const char* key, uint64_t otherwise) {
   const auto it = object.find(key);
-  return it != object.end() && it->is_number_unsigned() ? it->get<std::uint64_t>() : otherwise;
+  return it != object.end() && it->is_number_unsigned() ? it->get<uint64_t>() : otherwise;
 }
 
-std::uint64_t element_bytes(const Json& accessor) {
-  const std::uint64_t type = whole(accessor, "componentType", 0), component = type >= 5125 ? 4 : type >= 5122 ? 2 : 1;
+uint64_t element_bytes(const Json& accessor) {
+  const uint64_t type = whole(accessor, "componentType", 0), component = type >= 5125 ? 4 : type >= 5122 ? 2 : 1;
   const std::string shape = text_or(accessor, "type", "");
   if (shape == "SCALAR") return component;
   if (shape.size() != 4) return 0;
-  const auto n = static_cast<std::uint64_t>(shape[3] - '0');
+  const auto n = static_cast<uint64_t>(shape[3] - '0');
   if (shape[0] == 'V') return n * component;
   return n * ((n * component + 3) / 4 * 4);  // columns start at multiples of four bytes
 }

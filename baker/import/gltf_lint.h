@@ -2,6 +2,8 @@
 // Warnings for breaches of glTF 2.0 that do not affect the bake.
 #pragma once
 
+#include <cstdint>
+
 #include "json_object.h"
 
 namespace chandelier::baker {
@@ -15,19 +17,19 @@ struct Lint {
   const std::string& file;
   Warnings& warnings;
 
-  void say(const char* section, std::size_t index, const std::string& what) const {
+  void say(const char* section, size_t index, const std::string& what) const {
     warnings.add(file, place(json, section, index), "breaks glTF: " + what);
   }
-  const Json& entry(const char* section, std::size_t index) const { return json[section][index]; }
+  const Json& entry(const char* section, size_t index) const { return json[section][index]; }
   /// The buffer view of an accessor, or an empty object.
   const Json& view_of(const Json& accessor) const;
 };
 
 /// Bytes of one element of a checked accessor; 0 for a type that glTF lacks.
-std::uint64_t element_bytes(const Json& accessor);
+uint64_t element_bytes(const Json& accessor);
 
 /// A whole number under a key, or another where there is none.
-std::uint64_t whole(const Json& object, const char* key, std::uint64_t otherwise);
+uint64_t whole(const Json& object, const char* key, uint64_t otherwise);
 
 void lint_meshes(const Lint& lint);
 

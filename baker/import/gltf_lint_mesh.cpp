@@ -8,11 +8,11 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t vertex_target = 34962, index_target = 34963;  // a buffer view's target
+constexpr uint64_t vertex_target = 34962, index_target = 34963;  // a buffer view's target
 
 bool is_known_attribute(const std::string& name) {
   if (name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name[0] == '_') return true;
-  const std::size_t line = name.rfind('_');
+  const size_t line = name.rfind('_');
   if (line == std::string::npos || line + 1 == name.size()) return false;
   static const std::set<std::string> sets = {"TEXCOORD", "COLOR", "JOINTS", "WEIGHTS"};
   const std::string digits = name.substr(line + 1);
@@ -22,7 +22,7 @@ bool is_known_attribute(const std::string& name) {
 
 /// Whether the sets of an attribute are numbered without gaps.
 bool is_numbered_on(const std::string& name, const Json& attributes) {
-  const std::size_t line = name.rfind('_');
+  const size_t line = name.rfind('_');
   if (name[0] == '_' || line == std::string::npos || line + 1 == name.size()) return true;
   const std::string digits = name.substr(line + 1);
   if (digits.size() > 4 || digits.find_first_not_of("0123456789") != std::string::npos || digits == "0") return true;
@@ -31,12 +31,12 @@ bool is_numbered_on(const std::string& name, const Json& attributes) {
 
 struct MeshLint {
   const Lint& lint;
-  std::size_t mesh;
+  size_t mesh;
   void say(const std::string& what) const { lint.say("meshes", mesh, what); }
 
   void attribute(const std::string& name, const Json& accessor, bool quantized) const {
     const Json& view = lint.view_of(accessor);
-    const std::uint64_t type = whole(accessor, "componentType", 0);
+    const uint64_t type = whole(accessor, "componentType", 0);
     if (!is_known_attribute(name)) say("attribute '" + shortened(name, 40) + "' is unknown");
     if (type == 5125) say("an attribute is of 32-bit integers");
     if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) say("POSITION has no bounds");
@@ -51,7 +51,7 @@ struct MeshLint {
   }
 
   void indices(const Json& accessor) const {
-    const std::uint64_t type = whole(accessor, "componentType", 0);
+    const uint64_t type = whole(accessor, "componentType", 0);
     const bool right = accessor["type"] == "SCALAR" && (type == 5121 || type == 5123 || type == 5125);
     if (!right || accessor.value("normalized", false)) say("indices are not of unsigned integers");
     if (lint.view_of(accessor).contains("byteStride")) say("indices have a byteStride");
@@ -62,11 +62,11 @@ struct MeshLint {
   /// One morph target; one that has a weight is read, and may fail.
   void target(const Json& target, const Json& attributes) const {
     for (const auto& [name, value] : target.items()) {
-      const Json& accessor = lint.entry("accessors", value.get<std::size_t>());
+      const Json& accessor = lint.entry("accessors", value.get<size_t>());
       if (!is_known_attribute(name)) say("a morph target has an unknown attribute");
       if (!attributes.contains(name)) {
         say("a morph target has an attribute that its base lacks");
-      } else if (accessor["count"] != lint.entry("accessors", attributes[name].get<std::size_t>())["count"]) {
+      } else if (accessor["count"] != lint.entry("accessors", attributes[name].get<size_t>())["count"]) {
         say("a morph target has another count than its base");
       }
       if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) say("POSITION has no bounds");
@@ -76,12 +76,12 @@ struct MeshLint {
     }
   }
 
-  void primitive(const Json& primitive, bool quantized, std::vector<std::uint64_t>& shared) const {
+  void primitive(const Json& primitive, bool quantized, std::vector<uint64_t>& shared) const {
     const Json& attributes = primitive["attributes"];
-    std::set<std::uint64_t> counts;
+    std::set<uint64_t> counts;
     if (attributes.empty()) say("a primitive has no attributes");
     for (const auto& [name, value] : attributes.items()) {
-      const Json& accessor = lint.entry("accessors", value.get<std::size_t>());
+      const Json& accessor = lint.entry("accessors", value.get<size_t>());
       counts.insert(whole(accessor, "count", 0));
       attribute(name, accessor, quantized);
       if (!is_numbered_on(name, attributes)) say("attributes' sets are not numbered from 0");
@@ -91,21 +91,21 @@ struct MeshLint {
         say("WEIGHTS come without JOINTS");
       }
       if (accessor.contains("bufferView"))
-        shared.push_back(whole(accessor, "bufferView", 0) << 32 | value.get<std::uint64_t>());
+        shared.push_back(whole(accessor, "bufferView", 0) << 32 | value.get<uint64_t>());
     }
     if (counts.size() > 1) say("a primitive's attributes have different counts");
-    if (primitive.contains("indices")) indices(lint.entry("accessors", primitive["indices"].get<std::size_t>()));
+    if (primitive.contains("indices")) indices(lint.entry("accessors", primitive["indices"].get<size_t>()));
     if (!primitive.contains("targets") || !primitive["targets"].is_array()) return;
     for (const Json& each : primitive["targets"]) target(each, attributes);
   }
 };
 
 /// Accessors of vertices in one view need its stride. `shared`: buffer view and accessor, of each attribute.
-void lint_strides(const Lint& lint, std::vector<std::uint64_t>& shared) {
+void lint_strides(const Lint& lint, std::vector<uint64_t>& shared) {
   std::sort(shared.begin(), shared.end());
   shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
-  for (std::size_t i = 1; i < shared.size(); ++i) {
-    const std::uint64_t view = shared[i] >> 32;
+  for (size_t i = 1; i < shared.size(); ++i) {
+    const uint64_t view = shared[i] >> 32;
     if (view != shared[i - 1] >> 32 || lint.entry("bufferViews", view).contains("byteStride")) continue;
     lint.say("bufferViews", view, "it has several attributes and no byteStride");
   }
@@ -114,14 +114,14 @@ void lint_strides(const Lint& lint, std::vector<std::uint64_t>& shared) {
 }  // namespace
 
 void lint_meshes(const Lint& lint) {
-  std::vector<std::uint64_t> shared;
+  std::vector<uint64_t> shared;
   const auto used = lint.json.find("extensionsUsed");
   const bool quantized =
       used != lint.json.end() && std::find(used->begin(), used->end(), "KHR_mesh_quantization") != used->end();
-  for (std::size_t m = 0; m < section_size(lint.json, "meshes"); ++m) {
+  for (size_t m = 0; m < section_size(lint.json, "meshes"); ++m) {
     const Json& mesh = lint.entry("meshes", m);
     const MeshLint each{lint, m};
-    std::set<std::size_t> target_counts;
+    std::set<size_t> target_counts;
     for (const Json& primitive : mesh["primitives"]) {
       each.primitive(primitive, quantized, shared);
       target_counts.insert(section_size(primitive, "targets"));

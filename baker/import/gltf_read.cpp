@@ -13,20 +13,20 @@ namespace chandelier::baker {
 namespace {
 
 constexpr int most_nesting = 200;  // of JSON: glTF needs about ten; parsers recurse
-constexpr std::uint32_t glb_magic = 0x46546C67, json_chunk = 0x4E4F534A, bin_chunk = 0x004E4942;
+constexpr uint32_t glb_magic = 0x46546C67, json_chunk = 0x4E4F534A, bin_chunk = 0x004E4942;
 
-std::uint32_t u32_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
-  std::uint32_t value = 0;
+uint32_t u32_at(std::span<const uint8_t> bytes, size_t offset) {
+  uint32_t value = 0;
   std::memcpy(&value, bytes.data() + offset, 4);
   return value;
 }
 
 struct Chunks {
-  std::span<const std::uint8_t> json, bin;
+  std::span<const uint8_t> json, bin;
 };
 
 /// If the file is of another known kind, the error says so without parsing it as JSON.
-void refuse_other_kinds(std::span<const std::uint8_t> bytes, const std::string& file) {
+void refuse_other_kinds(std::span<const uint8_t> bytes, const std::string& file) {
   const pack::KnownFile is = pack::known_file(file, std::as_bytes(bytes));
   if (is.kind == pack::FileKind::pack) {
     fail(file, "is not a glTF: it is a Chandelier pack already; chandelier-play shows it, chandelier-inspect lists it");
@@ -36,20 +36,20 @@ void refuse_other_kinds(std::span<const std::uint8_t> bytes, const std::string& 
 }
 
 /// Splits a .glb; a .gltf is all JSON.
-Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& file, Warnings& warnings) {
+Chunks split_container(std::span<const uint8_t> bytes, const std::string& file, Warnings& warnings) {
   if (bytes.size() < 4 || u32_at(bytes, 0) != glb_magic) return {bytes, {}};
   if (bytes.size() < 20) fail(file, "truncated GLB (" + std::to_string(bytes.size()) + " bytes)");
   if (u32_at(bytes, 4) != 2) fail(file, "GLB version is not 2 (" + std::to_string(u32_at(bytes, 4)) + ")");
-  const std::uint64_t length = u32_at(bytes, 8);
+  const uint64_t length = u32_at(bytes, 8);
   if (length > bytes.size()) {
     fail(file,
          "truncated GLB: header says " + std::to_string(length) + " bytes (" + std::to_string(bytes.size()) + ")");
   }
   Chunks chunks;
-  for (std::uint64_t at = 12, number = 0; at < length; ++number) {
+  for (uint64_t at = 12, number = 0; at < length; ++number) {
     const std::string where = file + ": GLB chunk " + std::to_string(number);
     if (length - at < 8) fail(where, "truncated (" + std::to_string(length - at) + " bytes left)");
-    const std::uint64_t size = u32_at(bytes, at), type = u32_at(bytes, at + 4);
+    const uint64_t size = u32_at(bytes, at), type = u32_at(bytes, at + 4);
     if (size > length - at - 8) fail(where, "is longer than the file (" + std::to_string(size) + " bytes)");
     const auto data = bytes.subspan(at + 8, size);
     if (number == 0 && type != json_chunk) fail(where, "is not JSON (type " + std::to_string(type) + ")");
@@ -64,10 +64,10 @@ Chunks split_container(std::span<const std::uint8_t> bytes, const std::string& f
   return chunks;
 }
 
-void check_nesting(std::span<const std::uint8_t> text, const std::string& file) {
+void check_nesting(std::span<const uint8_t> text, const std::string& file) {
   int depth = 0;
   bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  for (size_t i = 0; i < text.size(); ++i) {
     const char c = static_cast<char>(text[i]);
     if (in_string) {
       if (c == '\\') ++i;
@@ -81,7 +81,7 @@ void check_nesting(std::span<const std::uint8_t> text, const std::string& file) 
   }
 }
 
-Json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
+Json parse_json(std::span<const uint8_t> text, const std::string& file) {
   check_nesting(text, file);
   try {
     return Json::parse(text.begin(), text.end());
@@ -95,7 +95,7 @@ Json parse_json(std::span<const std::uint8_t> text, const std::string& file) {
 void make_integer(Json& json) {
   if (!json.is_number_float()) return;
   const double number = json.get<double>();
-  if (number >= 0 && number < 9e15 && number == std::floor(number)) json = static_cast<std::uint64_t>(number);
+  if (number >= 0 && number < 9e15 && number == std::floor(number)) json = static_cast<uint64_t>(number);
 }
 
 /// JSON does not distinguish 1 and 1.0, but tinygltf does. So 1.0 becomes 1 under keys that need whole numbers.
@@ -123,16 +123,16 @@ void make_integers(Json& json) {
 template <typename JsonOrConst, typename Visit>
 void for_each_primitive(JsonOrConst& json, Visit visit) {
   if (!json.contains("meshes")) return;
-  for (std::size_t m = 0; m < json["meshes"].size(); ++m) {
+  for (size_t m = 0; m < json["meshes"].size(); ++m) {
     auto& primitives = json["meshes"][m]["primitives"];
-    for (std::size_t p = 0; p < primitives.size(); ++p) visit(primitives[p], m, p);
+    for (size_t p = 0; p < primitives.size(); ++p) visit(primitives[p], m, p);
   }
 }
 
 /// tinygltf refuses accessors of a type that it does not know, used or not: makes them SCALAR and returns them.
-std::vector<std::size_t> hide_unknown_types(Json& json) {
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < section_size(json, "accessors"); ++i) {
+std::vector<size_t> hide_unknown_types(Json& json) {
+  std::vector<size_t> out;
+  for (size_t i = 0; i < section_size(json, "accessors"); ++i) {
     Json& type = json["accessors"][i]["type"];
     if (is_accessor_type(type.get_ref<const std::string&>())) continue;
     type = "SCALAR";
@@ -146,8 +146,8 @@ std::vector<std::size_t> hide_unknown_types(Json& json) {
 tinygltf::Model parse_model(const Json& json, const std::string& file) {
   Json reduced = json;
   for (const char* section : {"buffers", "images", "animations", "skins", "extras"}) reduced.erase(section);
-  for_each_primitive(reduced, [](Json& primitive, std::size_t, std::size_t) { primitive.erase("indices"); });
-  const std::vector<std::size_t> untyped = hide_unknown_types(reduced);
+  for_each_primitive(reduced, [](Json& primitive, size_t, size_t) { primitive.erase("indices"); });
+  const std::vector<size_t> untyped = hide_unknown_types(reduced);
   const std::string text = reduced.dump();
   if (text.size() > 0xFFFFFFFFu) fail(file, "JSON is too large (" + std::to_string(text.size()) + " bytes)");
   tinygltf::TinyGLTF parser;
@@ -157,8 +157,8 @@ tinygltf::Model parse_model(const Json& json, const std::string& file) {
     while (!error.empty() && error.back() == '\n') error.pop_back();
     fail(file, "is not a glTF: " + error);
   }
-  for (const std::size_t accessor : untyped) model.accessors[accessor].type = -1;
-  for_each_primitive(json, [&](const Json& primitive, std::size_t mesh, std::size_t number) {
+  for (const size_t accessor : untyped) model.accessors[accessor].type = -1;
+  for_each_primitive(json, [&](const Json& primitive, size_t mesh, size_t number) {
     model.meshes[mesh].primitives[number].indices = primitive.value("indices", -1);
   });
   return model;
@@ -172,10 +172,10 @@ bool is_fallback(const Json& buffer) {
 }
 
 /// A buffer's bytes, or its fault, which is thrown only when something reads it.
-void load_buffer(Gltf& gltf, std::size_t number, std::span<const std::uint8_t> bin, Warnings& warnings) {
+void load_buffer(Gltf& gltf, size_t number, std::span<const uint8_t> bin, Warnings& warnings) {
   const Json& json = gltf.json["buffers"][number];
   const std::string here = place(gltf.json, "buffers", number), where = gltf.file + ": " + here;
-  const auto length = json["byteLength"].get<std::uint64_t>();
+  const auto length = json["byteLength"].get<uint64_t>();
   Buffer& buffer = gltf.buffers[number];
   if (is_fallback(json)) return;
   if (json.contains("uri")) {
@@ -193,9 +193,9 @@ void load_buffer(Gltf& gltf, std::size_t number, std::span<const std::uint8_t> b
   buffer.present = true;
 }
 
-void load_buffers(Gltf& gltf, std::span<const std::uint8_t> bin, Warnings& warnings) {
+void load_buffers(Gltf& gltf, std::span<const uint8_t> bin, Warnings& warnings) {
   gltf.buffers.resize(section_size(gltf.json, "buffers"));
-  for (std::size_t i = 0; i < gltf.buffers.size(); ++i) {
+  for (size_t i = 0; i < gltf.buffers.size(); ++i) {
     try {
       load_buffer(gltf, i, bin, warnings);
     } catch (const Error& error) {
@@ -207,7 +207,7 @@ void load_buffers(Gltf& gltf, std::span<const std::uint8_t> bin, Warnings& warni
 }  // namespace
 
 void warn_of_buffers(const Gltf& gltf, Warnings& warnings) {
-  for (std::size_t i = 0; i < gltf.buffers.size(); ++i) {
+  for (size_t i = 0; i < gltf.buffers.size(); ++i) {
     const Buffer& buffer = gltf.buffers[i];
     const std::string here = place(gltf.json, "buffers", i);
     if (!buffer.error.empty()) warnings.add(gltf.file, here, "cannot be read, but nothing in the scene uses it");
@@ -227,23 +227,23 @@ Bytes read_uri(Gltf& gltf, const std::string& uri, const std::string& here, Warn
 }
 
 bool is_present(const Gltf& gltf, int buffer_view) {
-  const auto view = static_cast<std::size_t>(buffer_view);
+  const auto view = static_cast<size_t>(buffer_view);
   if (gltf.decoded_views[view].present || !gltf.decoded_views[view].error.empty()) return true;
-  const Buffer& buffer = gltf.buffers[static_cast<std::size_t>(gltf.model.bufferViews[view].buffer)];
+  const Buffer& buffer = gltf.buffers[static_cast<size_t>(gltf.model.bufferViews[view].buffer)];
   return buffer.present || !buffer.error.empty();
 }
 
-std::span<const std::uint8_t> view_bytes(const Gltf& gltf, int buffer_view, const std::string& where) {
-  const Buffer& decoded = gltf.decoded_views[static_cast<std::size_t>(buffer_view)];
+std::span<const uint8_t> view_bytes(const Gltf& gltf, int buffer_view, const std::string& where) {
+  const Buffer& decoded = gltf.decoded_views[static_cast<size_t>(buffer_view)];
   if (!decoded.error.empty()) throw Error(decoded.error);
   if (decoded.present) return decoded.data.bytes;
-  const tinygltf::BufferView& view = gltf.model.bufferViews[static_cast<std::size_t>(buffer_view)];
-  return buffer_bytes(gltf, static_cast<std::size_t>(view.buffer), view.byteOffset, view.byteLength,
+  const tinygltf::BufferView& view = gltf.model.bufferViews[static_cast<size_t>(buffer_view)];
+  return buffer_bytes(gltf, static_cast<size_t>(view.buffer), view.byteOffset, view.byteLength,
                       where + ": buffer view " + std::to_string(buffer_view));
 }
 
-std::span<const std::uint8_t> buffer_bytes(const Gltf& gltf, std::size_t number, std::uint64_t offset,
-                                           std::uint64_t length, const std::string& what) {
+std::span<const uint8_t> buffer_bytes(const Gltf& gltf, size_t number, uint64_t offset, uint64_t length,
+                                      const std::string& what) {
   const Buffer& buffer = gltf.buffers[number];
   if (!buffer.error.empty()) throw Error(buffer.error);
   const auto bytes = buffer.data.bytes;

@@ -21,7 +21,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t most_instances = std::size_t{1} << 24;  // a few bytes of a file can stand for many
+constexpr size_t most_instances = size_t{1} << 24;  // a few bytes of a file can stand for many
 
 struct Import {
   Gltf& gltf;
@@ -32,17 +32,17 @@ struct Import {
   MeshUses meshes;
   std::vector<const MeshShape*> mesh_order;  // as the scene has them
   ImportCounts counts;
-  std::set<std::size_t> lights;  // that nodes have, as the file numbers them
+  std::set<size_t> lights;  // that nodes have, as the file numbers them
 };
 
-std::uint32_t skin_of(const Import& in, const tinygltf::Node& node) {
-  return node.skin < 0 ? no_index : in.motion.skin[static_cast<std::size_t>(node.skin)];
+uint32_t skin_of(const Import& in, const tinygltf::Node& node) {
+  return node.skin < 0 ? no_index : in.motion.skin[static_cast<size_t>(node.skin)];
 }
 
 /// Of a skin that nothing moves; else nullptr.
 const Pose* pose_of(const Import& in, const tinygltf::Node& node) {
   if (node.skin < 0) return nullptr;
-  const Pose& pose = in.motion.pose[static_cast<std::size_t>(node.skin)];
+  const Pose& pose = in.motion.pose[static_cast<size_t>(node.skin)];
   return pose.world_from_bind.empty() ? nullptr : &pose;
 }
 
@@ -52,7 +52,7 @@ glm::dmat4 place_of_mesh(const Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   if (const Pose* pose = pose_of(in, node)) return glm::translate(glm::dmat4(1), pose->origin_ws);
   if (skin_of(in, node) == no_index) return placed.world_from_local;
-  const glm::dmat4& by_joint = in.motion.placed[static_cast<std::size_t>(node.skin)];
+  const glm::dmat4& by_joint = in.motion.placed[static_cast<size_t>(node.skin)];
   return is_degenerate(by_joint) ? placed.world_from_local : by_joint;
 }
 
@@ -62,9 +62,9 @@ bool may_grow(const Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
   if (node.extensions.contains("EXT_mesh_gpu_instancing")) return false;
   if (skin_of(in, node) == no_index) return in.motion.moves[placed.node];
-  const Json& joints = in.gltf.json["skins"][static_cast<std::size_t>(node.skin)]["joints"];
+  const Json& joints = in.gltf.json["skins"][static_cast<size_t>(node.skin)]["joints"];
   return std::any_of(joints.begin(), joints.end(),
-                     [&](const Json& joint) { return in.motion.moves[joint.get<std::size_t>()] != 0; });
+                     [&](const Json& joint) { return in.motion.moves[joint.get<size_t>()] != 0; });
 }
 
 void warn_of_scale(const Import& in, const PlacedNode& placed) {
@@ -84,10 +84,10 @@ void count_hidden(Import& in, const PlacedNode& placed) {
 /// Everything but meshes; notes which meshes are used.
 void visit_node(Import& in, const PlacedNode& placed) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
-  const std::size_t lights = in.scene.lights.size(), cameras = in.scene.cameras.size();
+  const size_t lights = in.scene.lights.size(), cameras = in.scene.cameras.size();
   if (placed.visible) add_light(in.gltf, placed, in.lights, in.scene, in.warnings);
   add_camera(in.gltf, placed, in.scene, in.warnings);
-  const std::uint32_t mover = in.motion.mover(placed.node);
+  const uint32_t mover = in.motion.mover(placed.node);
   if (in.scene.lights.size() > lights) {
     in.scene.lights.back().node = mover;
     in.scene.lights.back().dynamic = in.scene.lights.back().dynamic || mover != no_index;
@@ -109,7 +109,7 @@ void visit_node(Import& in, const PlacedNode& placed) {
 void check_size(const Import& in) {
   GeometrySize total;
   for (const MeshShape* shape : in.mesh_order) {
-    for (std::size_t p = 0; p < in.gltf.model.meshes[shape->mesh].primitives.size(); ++p) {
+    for (size_t p = 0; p < in.gltf.model.meshes[shape->mesh].primitives.size(); ++p) {
       add_size(in.gltf, shape->mesh, p, in.morphs[shape->morph_weights], total);
     }
   }
@@ -117,12 +117,12 @@ void check_size(const Import& in) {
 
 std::vector<std::vector<ReadPrimitive>> read_primitives(const Import& in) {
   std::vector<std::vector<ReadPrimitive>> out(in.mesh_order.size());
-  std::vector<std::pair<std::size_t, std::size_t>> jobs;  // mesh in order, primitive
-  for (std::size_t m = 0; m < out.size(); ++m) {
+  std::vector<std::pair<size_t, size_t>> jobs;  // mesh in order, primitive
+  for (size_t m = 0; m < out.size(); ++m) {
     out[m].resize(in.gltf.model.meshes[in.mesh_order[m]->mesh].primitives.size());
-    for (std::size_t p = 0; p < out[m].size(); ++p) jobs.emplace_back(m, p);
+    for (size_t p = 0; p < out[m].size(); ++p) jobs.emplace_back(m, p);
   }
-  tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+  tbb::parallel_for(size_t{0}, jobs.size(), [&](size_t i) {
     const auto [m, p] = jobs[i];
     const MeshShape& shape = *in.mesh_order[m];
     out[m][p] = read_primitive(in.gltf, shape.mesh, p, in.meshes.at(shape).skinned, in.morphs[shape.morph_weights]);
@@ -131,8 +131,8 @@ std::vector<std::vector<ReadPrimitive>> read_primitives(const Import& in) {
 }
 
 /// The joints that a mesh asks for; 0 and no joints at all where not every vertex has some.
-std::uint32_t settle_joints(Mesh& mesh) {
-  std::uint32_t count = 0;
+uint32_t settle_joints(Mesh& mesh) {
+  uint32_t count = 0;
   const bool all = std::all_of(mesh.primitives.begin(), mesh.primitives.end(), [](const Primitive& primitive) {
     return primitive.skin_vertices.size() == primitive.vertices.size();
   });
@@ -146,7 +146,7 @@ std::uint32_t settle_joints(Mesh& mesh) {
 }
 
 /// Throws Error where a node's mesh asks for joints that its skin lacks.
-void check_joints(const Import& in, std::size_t node, std::uint32_t asked, std::size_t joints) {
+void check_joints(const Import& in, size_t node, uint32_t asked, size_t joints) {
   if (asked <= joints) return;
   fail(in.gltf.file + ": " + place(in.gltf.json, "nodes", node),
        "its mesh asks for joints that its skin lacks, which has " + std::to_string(joints) + " (" +
@@ -155,7 +155,7 @@ void check_joints(const Import& in, std::size_t node, std::uint32_t asked, std::
 
 void add_mesh(Import& in, const MeshShape& shape, std::vector<ReadPrimitive>&& read, Materials& materials) {
   Mesh mesh;
-  for (std::size_t p = 0; p < read.size(); ++p) {
+  for (size_t p = 0; p < read.size(); ++p) {
     for (const std::string& warning : read[p].warnings) {
       in.warnings.add(in.gltf.file, place_of_primitive(in.gltf, shape.mesh, p), warning);
     }
@@ -182,7 +182,7 @@ void add_mesh(Import& in, const MeshShape& shape, std::vector<ReadPrimitive>&& r
 /// that the skin lacks.
 void place_by_skin(const Import& in, const PlacedNode& placed, const MeshUse& mesh, MeshInstance& instance) {
   const tinygltf::Node& node = in.gltf.model.nodes[placed.node];
-  const std::uint32_t skin = skin_of(in, node);
+  const uint32_t skin = skin_of(in, node);
   const bool posed = pose_of(in, node) != nullptr;
   if (skin == no_index && !posed) return;
   if (mesh.joint_count == 0) {
@@ -245,7 +245,7 @@ ImportCounts import_file(const std::filesystem::path& path, Scene& scene, Warnin
   check_size(in);
   std::vector<std::vector<ReadPrimitive>> primitives = read_primitives(in);
   Materials materials(gltf, scene, warnings);
-  for (std::size_t m = 0; m < primitives.size(); ++m) {
+  for (size_t m = 0; m < primitives.size(); ++m) {
     add_mesh(in, *in.mesh_order[m], std::move(primitives[m]), materials);
   }
   for (const PlacedNode& placed : nodes) add_instances(in, placed);

@@ -2,6 +2,7 @@
 // glTF 2.0 (.gltf, .glb) to Scene.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "../error.h"
@@ -16,9 +17,9 @@ struct ImportSettings {
 /// Counts of an import.
 struct ImportCounts {
   bool has_scene = false;  // the file has the scene that was asked for
-  std::uint64_t hidden_nodes = 0;
-  std::uint64_t scenes_left_out = 0;
-  std::uint64_t converted_materials = 0;  // from specular-glossiness
+  uint64_t hidden_nodes = 0;
+  uint64_t scenes_left_out = 0;
+  uint64_t converted_materials = 0;  // from specular-glossiness
 };
 
 /// Appends what a scene of the file shows to `scene`. Throws Error.

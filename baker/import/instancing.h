@@ -2,6 +2,7 @@
 // EXT_mesh_gpu_instancing: one node with many transforms.
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <optional>
 
@@ -10,6 +11,6 @@
 namespace chandelier::baker {
 
 /// Where the node's mesh stands, in the node's own space; nothing for a node without the extension. Throws Error.
-std::optional<std::vector<glm::dmat4>> read_instances(const Gltf& gltf, std::size_t node);
+std::optional<std::vector<glm::dmat4>> read_instances(const Gltf& gltf, size_t node);
 
 }  // namespace chandelier::baker

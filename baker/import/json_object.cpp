@@ -8,7 +8,7 @@ std::string shown(const Json& value) {
   return shortened(value.dump(-1, ' ', true), 60);
 }
 
-std::size_t section_size(const Json& json, const char* section) {
+size_t section_size(const Json& json, const char* section) {
   const auto it = json.find(section);
   return it != json.end() && it->is_array() ? it->size() : 0;
 }
@@ -34,11 +34,11 @@ void Object::boolean(const char* key) const {
   if (value && !value->is_boolean()) bad(key, "is not true or false", *value);
 }
 
-void Object::integer(const char* key, std::uint64_t least, std::uint64_t most, Need need) const {
+void Object::integer(const char* key, uint64_t least, uint64_t most, Need need) const {
   const Json* value = find(key, need);
   if (!value) return;
   if (!value->is_number_unsigned()) bad(key, "is not a whole number", *value);
-  const auto number = value->get<std::uint64_t>();
+  const auto number = value->get<uint64_t>();
   if (number < least || number > most) bad(key, "is out of range", *value);
 }
 
@@ -47,7 +47,7 @@ void Object::number(const char* key, double least, double most, Need need) const
   if (value) check_number(key, *value, least, most);
 }
 
-void Object::numbers(const char* key, std::size_t count, double least, double most) const {
+void Object::numbers(const char* key, size_t count, double least, double most) const {
   const Json* value = find(key);
   if (!value) return;
   if (!value->is_array() || value->size() != count) {
@@ -62,21 +62,21 @@ void Object::check_number(const char* key, const Json& value, double least, doub
   if (!(number >= least && number <= most)) bad(key, "is out of range", value);
 }
 
-void Object::index(const char* key, std::size_t count, Need need) const {
+void Object::index(const char* key, size_t count, Need need) const {
   const Json* value = find(key, need);
   if (value) check_index(key, *value, count);
 }
 
-void Object::indices(const char* key, std::size_t count, Need need) const {
+void Object::indices(const char* key, size_t count, Need need) const {
   const Json* value = find(key, need);
   if (!value) return;
   if (!value->is_array()) bad(key, "is not an array", *value);
   for (const Json& each : *value) check_index(key, each, count);
 }
 
-void Object::check_index(const char* key, const Json& value, std::size_t count) const {
+void Object::check_index(const char* key, const Json& value, size_t count) const {
   if (!value.is_number_unsigned()) bad(key, "is not an index", value);
-  if (value.get<std::uint64_t>() >= count) {
+  if (value.get<uint64_t>() >= count) {
     bad(key, "points past the end, there are " + std::to_string(count), value);
   }
 }
@@ -99,7 +99,7 @@ std::vector<Object> Object::objects(const char* key, Need need) const {
   if (!value) return out;
   if (!value->is_array()) bad(key, "is not an array", *value);
   const std::string singular = std::string(key).substr(0, std::string(key).size() - 1);
-  for (std::size_t i = 0; i < value->size(); ++i) {
+  for (size_t i = 0; i < value->size(); ++i) {
     out.push_back({(*value)[i], where + ", " + singular + " " + std::to_string(i)});
     if (!(*value)[i].is_object()) fail(out.back().where, "is not an object (" + shown((*value)[i]) + ")");
   }

@@ -2,6 +2,7 @@
 // A JSON object and its place in the file. Each member function checks one key; errors name the place and the value.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "gltf.h"
@@ -14,11 +15,11 @@ enum class Need { optional, required };
 std::string shown(const Json& value);
 
 /// The entries of a glTF array; 0 where there is none.
-std::size_t section_size(const Json& json, const char* section);
+size_t section_size(const Json& json, const char* section);
 
 constexpr double largest_number = 3e38;  // every number must fit a float
-constexpr std::uint64_t largest_byte_count = 1ull << 53;
-constexpr std::uint64_t largest_int = 0x7FFFFFFF;
+constexpr uint64_t largest_byte_count = 1ull << 53;
+constexpr uint64_t largest_int = 0x7FFFFFFF;
 
 struct Object {
   const Json& json;  // the object
@@ -28,11 +29,11 @@ struct Object {
   const Json* find(const char* key, Need need = Need::optional) const;
   void text(const char* key, Need need = Need::optional) const;
   void boolean(const char* key) const;
-  void integer(const char* key, std::uint64_t least, std::uint64_t most, Need need = Need::optional) const;
+  void integer(const char* key, uint64_t least, uint64_t most, Need need = Need::optional) const;
   void number(const char* key, double least, double most, Need need = Need::optional) const;
-  void numbers(const char* key, std::size_t count, double least, double most) const;
-  void index(const char* key, std::size_t count, Need need = Need::optional) const;
-  void indices(const char* key, std::size_t count, Need need = Need::optional) const;
+  void numbers(const char* key, size_t count, double least, double most) const;
+  void index(const char* key, size_t count, Need need = Need::optional) const;
+  void indices(const char* key, size_t count, Need need = Need::optional) const;
   std::optional<Object> object(const char* key, Need need = Need::optional) const;
   /// This object's data of an extension.
   std::optional<Object> extension(const char* name) const;
@@ -40,7 +41,7 @@ struct Object {
   std::vector<Object> objects(const char* key, Need need = Need::optional) const;
 
   void check_number(const char* key, const Json& value, double least, double most) const;
-  void check_index(const char* key, const Json& value, std::size_t count) const;
+  void check_index(const char* key, const Json& value, size_t count) const;
 };
 
 }  // namespace chandelier::baker

@@ -57,12 +57,11 @@ bool aim(const PlacedNode& placed, Light& light) {
 
 }  // namespace
 
-void add_light(const Gltf& gltf, const PlacedNode& placed, std::set<std::size_t>& seen, Scene& scene,
-               Warnings& warnings) {
+void add_light(const Gltf& gltf, const PlacedNode& placed, std::set<size_t>& seen, Scene& scene, Warnings& warnings) {
   const tinygltf::Node& node = gltf.model.nodes[placed.node];
   const auto extension = node.extensions.find("KHR_lights_punctual");
   if (extension == node.extensions.end() || !extension->second.Has("light")) return;
-  const auto number = static_cast<std::size_t>(extension->second.Get("light").GetNumberAsInt());
+  const auto number = static_cast<size_t>(extension->second.Get("light").GetNumberAsInt());
   const tinygltf::Light& in = gltf.model.lights[number];
   const Json& lights = gltf.json["extensions"]["KHR_lights_punctual"];
   const std::string here = place(gltf.json, "nodes", placed.node);

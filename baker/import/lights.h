@@ -2,6 +2,7 @@
 // Lights: KHR_lights_punctual, and what their author adds in `extras.chandelier` (light_extras.schema.json).
 #pragma once
 
+#include <cstddef>
 #include <set>
 
 #include "../scene.h"
@@ -12,7 +13,6 @@ namespace chandelier::baker {
 
 /// Appends the node's light to the scene, if it has one. `seen`: lights that other nodes have shown already; their
 /// warnings are not repeated. Throws Error.
-void add_light(const Gltf& gltf, const PlacedNode& placed, std::set<std::size_t>& seen, Scene& scene,
-               Warnings& warnings);
+void add_light(const Gltf& gltf, const PlacedNode& placed, std::set<size_t>& seen, Scene& scene, Warnings& warnings);
 
 }  // namespace chandelier::baker

@@ -61,30 +61,30 @@ UvTransform uv_transform(const Json& json) {
 }
 
 /// An image of KHR_texture_basisu, which is not decoded.
-bool is_ktx2(const std::vector<std::uint8_t>& bytes) {
+bool is_ktx2(const std::vector<uint8_t>& bytes) {
   constexpr std::string_view magic = "\xABKTX 20";
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
 }  // namespace
 
-std::uint32_t Materials::use(int material) {
+uint32_t Materials::use(int material) {
   const auto [it, added] = materials_.try_emplace(material, 0);
   if (added) it->second = add_material(material);
   return it->second;
 }
 
-std::uint32_t Materials::add_material(int index) {
+uint32_t Materials::add_material(int index) {
   Material out;
   if (index >= 0) {
-    const tinygltf::Material& in = gltf_.model.materials[static_cast<std::size_t>(index)];
-    const std::string here = place(gltf_.json, "materials", static_cast<std::size_t>(index));
+    const tinygltf::Material& in = gltf_.model.materials[static_cast<size_t>(index)];
+    const std::string here = place(gltf_.json, "materials", static_cast<size_t>(index));
     const std::string where = gltf_.file + ": " + here;
     const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
     out.name = in.name;
     out.where = where;
     for (int c = 0; c < 4; ++c) out.base_color_factor[c] = static_cast<float>(pbr.baseColorFactor[c]);
-    const double strength = emissive_strength(gltf_.json["materials"][static_cast<std::size_t>(index)]);
+    const double strength = emissive_strength(gltf_.json["materials"][static_cast<size_t>(index)]);
     for (int c = 0; c < 3; ++c) out.emissive[c] = static_cast<float>(in.emissiveFactor[c] * strength);
     for (int c = 0; c < 3; ++c) {
       if (!(out.emissive[c] <= most_emissive)) {
@@ -97,7 +97,7 @@ std::uint32_t Materials::add_material(int index) {
     out.normal_scale = static_cast<float>(in.normalTexture.scale);
     out.occlusion_strength = std::clamp(static_cast<float>(in.occlusionTexture.strength), 0.0f, 1.0f);
     out.double_sided = in.doubleSided;
-    const Json& json = gltf_.json["materials"][static_cast<std::size_t>(index)];
+    const Json& json = gltf_.json["materials"][static_cast<size_t>(index)];
     out.unlit = json.contains(Json::json_pointer("/extensions/KHR_materials_unlit"));
     static const Json::json_pointer glossy_pointer("/extensions/KHR_materials_pbrSpecularGlossiness");
     if (json.contains(glossy_pointer)) {  // which the extension prefers, where a material has both
@@ -111,7 +111,7 @@ std::uint32_t Materials::add_material(int index) {
     out.occlusion = use_texture(json, "occlusionTexture", false, here);
     out.emissive_map = use_texture(json, "emissiveTexture", false, here);
     read_transmission(json, here, out);
-    out.shadow = shadow_of_material(gltf_, static_cast<std::size_t>(index), warnings_);
+    out.shadow = shadow_of_material(gltf_, static_cast<size_t>(index), warnings_);
     out.shadowless = !out.shadow.value_or(true);
     // Without its map, which may be black nearly everywhere, the whole surface would glow.
     if (json.contains("emissiveTexture") && out.emissive_map.texture == no_index) out.emissive = glm::vec3(0);
@@ -143,7 +143,7 @@ TextureUse Materials::use_texture(const Json& owner, const char* key, bool alpha
   const auto info = owner.find(key);
   if (info == owner.end()) return {};
   const std::string where = here + ", " + key;
-  const auto number = (*info)["index"].get<std::size_t>();
+  const auto number = (*info)["index"].get<size_t>();
   const auto image = image_of(gltf_.json["textures"][number], alpha, where);
   if (!image) return {};
   static const Json::json_pointer transform_pointer("/extensions/KHR_texture_transform");
@@ -158,12 +158,12 @@ TextureUse Materials::use_texture(const Json& owner, const char* key, bool alpha
   return {it->second, coordinates == 1, uv_transform(transform)};
 }
 
-std::optional<std::uint32_t> Materials::image_of(const Json& texture, bool alpha, const std::string& where) {
+std::optional<uint32_t> Materials::image_of(const Json& texture, bool alpha, const std::string& where) {
   static const Json::json_pointer webp("/extensions/EXT_texture_webp/source"), ktx2("/extensions/KHR_texture_basisu");
   bool lacking = texture.contains(ktx2);  // an image that is not decoded is left out
   for (const Json& source : {texture.value("source", Json()), texture.value(webp, Json())}) {
     if (source.is_null()) continue;
-    const std::uint32_t image = use_image(source.get<std::size_t>());
+    const uint32_t image = use_image(source.get<size_t>());
     if (!is_ktx2(scene_.images[image].bytes)) return image;
     lacking = true;
   }
@@ -217,12 +217,12 @@ void Materials::convert(const Json& glossy, bool alpha, const std::string& here,
   out.roughness_factor = 1;
 }
 
-std::uint32_t Materials::use_converted(const SpecularGlossiness& factors, const TextureUse& like) {
+uint32_t Materials::use_converted(const SpecularGlossiness& factors, const TextureUse& like) {
   const auto known = std::find_if(converted_images_.begin(), converted_images_.end(),
                                   [&](const auto& each) { return each.first == factors; });
-  std::uint32_t image = known == converted_images_.end() ? no_index : known->second;
+  uint32_t image = known == converted_images_.end() ? no_index : known->second;
   if (image == no_index) {
-    const std::uint32_t from = factors.diffuse == no_index ? factors.specular_glossiness : factors.diffuse;
+    const uint32_t from = factors.diffuse == no_index ? factors.specular_glossiness : factors.diffuse;
     const EncodedImage& source = scene_.images[from];
     scene_.images.push_back({source.name, source.where, {}, source.file, factors});
     image = fit_u32(scene_.images.size() - 1, "images");
@@ -234,12 +234,12 @@ std::uint32_t Materials::use_converted(const SpecularGlossiness& factors, const 
   return fit_u32(scene_.textures.size() - 1, "textures");
 }
 
-std::uint32_t Materials::add_texture(std::size_t index, std::uint32_t image) {
+uint32_t Materials::add_texture(size_t index, uint32_t image) {
   const tinygltf::Texture& in = gltf_.model.textures[index];
   Texture out;
   out.image = image;
   if (in.sampler >= 0) {
-    const auto number = static_cast<std::size_t>(in.sampler);
+    const auto number = static_cast<size_t>(in.sampler);
     const std::string where = gltf_.file + ": " + place(gltf_.json, "samplers", number);
     const tinygltf::Sampler& sampler = gltf_.model.samplers[number];
     out.wrap_u = wrap_of(sampler.wrapS, where + ", wrapS");
@@ -251,7 +251,7 @@ std::uint32_t Materials::add_texture(std::size_t index, std::uint32_t image) {
   return fit_u32(scene_.textures.size() - 1, "textures");
 }
 
-std::uint32_t Materials::use_image(std::size_t number) {
+uint32_t Materials::use_image(size_t number) {
   const auto [it, added] = images_.try_emplace(number, 0);
   if (!added) return it->second;
   const Json& in = gltf_.json["images"][number];

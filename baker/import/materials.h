@@ -2,6 +2,7 @@
 // glTF materials, textures and images; each is imported when something drawn first uses it.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 
@@ -15,35 +16,35 @@ class Materials {
   Materials(Gltf& gltf, Scene& scene, Warnings& warnings) : gltf_(gltf), scene_(scene), warnings_(warnings) {}
 
   /// The scene's material for a glTF material, or for none (-1): glTF's default. Throws Error.
-  std::uint32_t use(int material);
+  uint32_t use(int material);
 
   /// Warns of what was left out of the materials used.
   void warn() const;
 
   /// Materials of specular-glossiness among those used.
-  std::uint64_t converted() const { return converted_; }
+  uint64_t converted() const { return converted_; }
 
  private:
-  std::uint32_t add_material(int material);
+  uint32_t add_material(int material);
   void read_transmission(const Json& material, const std::string& here, Material& out);
   /// The texture that `owner` names under `key`; `alpha`: its alpha decides where there is a surface.
   TextureUse use_texture(const Json& owner, const char* key, bool alpha, const std::string& here);
   /// The image of a texture, where it has one that can be read.
-  std::optional<std::uint32_t> image_of(const Json& texture, bool alpha, const std::string& where);
+  std::optional<uint32_t> image_of(const Json& texture, bool alpha, const std::string& where);
   /// KHR_materials_pbrSpecularGlossiness, `glossy`, as the metallic-roughness that is nearest to it.
   void convert(const Json& glossy, bool alpha, const std::string& here, Material& out);
   /// The image that a texture of `factors` is converted to, and a texture of it like `like`.
-  std::uint32_t use_converted(const SpecularGlossiness& factors, const TextureUse& like);
-  std::uint32_t use_image(std::size_t image);
-  std::uint32_t add_texture(std::size_t texture, std::uint32_t image);
+  uint32_t use_converted(const SpecularGlossiness& factors, const TextureUse& like);
+  uint32_t use_image(size_t image);
+  uint32_t add_texture(size_t texture, uint32_t image);
 
   Gltf& gltf_;
   Scene& scene_;
   Warnings& warnings_;
-  std::map<int, std::uint32_t> materials_;
-  std::map<std::size_t, std::uint32_t> textures_, images_;
-  std::vector<std::pair<SpecularGlossiness, std::uint32_t>> converted_images_;
-  std::size_t blended_ = 0, converted_ = 0;
+  std::map<int, uint32_t> materials_;
+  std::map<size_t, uint32_t> textures_, images_;
+  std::vector<std::pair<SpecularGlossiness, uint32_t>> converted_images_;
+  size_t blended_ = 0, converted_ = 0;
 };
 
 }  // namespace chandelier::baker

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <compare>
+#include <cstdint>
 #include <map>
 
 #include "morph.h"
@@ -12,28 +13,27 @@ namespace chandelier::baker {
 
 /// A glTF mesh in one shape. Nodes that show the same one share it.
 struct MeshShape {
-  std::size_t mesh = 0;
-  std::uint32_t morph_weights = 0;  // their number among all
-  std::size_t posed_by = SIZE_MAX;  // glTF's number of a skin that nothing moves; SIZE_MAX: of none
+  size_t mesh = 0;
+  uint32_t morph_weights = 0;  // their number among all
+  size_t posed_by = SIZE_MAX;  // glTF's number of a skin that nothing moves; SIZE_MAX: of none
 
   auto operator<=>(const MeshShape&) const = default;
 };
 
 struct MeshUse {
-  std::uint32_t number = no_index;  // of Scene::meshes
-  std::size_t first_node = 0;       // that shows it
-  bool skinned = false;             // by one node at least
-  std::uint32_t joint_count = 0;    // that its vertices ask for; 0 where not all of them have joints
+  uint32_t number = no_index;  // of Scene::meshes
+  size_t first_node = 0;       // that shows it
+  bool skinned = false;        // by one node at least
+  uint32_t joint_count = 0;    // that its vertices ask for; 0 where not all of them have joints
 };
 
 using MeshUses = std::map<MeshShape, MeshUse>;
 
 /// The shape of a node's mesh. It must have one.
-inline MeshShape shape_of(const Gltf& gltf, const Motion& motion, MorphWeights& weights, std::size_t number) {
+inline MeshShape shape_of(const Gltf& gltf, const Motion& motion, MorphWeights& weights, size_t number) {
   const tinygltf::Node& node = gltf.model.nodes[number];
-  const bool posed = node.skin >= 0 && !motion.pose[static_cast<std::size_t>(node.skin)].world_from_bind.empty();
-  return {static_cast<std::size_t>(node.mesh), weights.of_node(number),
-          posed ? static_cast<std::size_t>(node.skin) : SIZE_MAX};
+  const bool posed = node.skin >= 0 && !motion.pose[static_cast<size_t>(node.skin)].world_from_bind.empty();
+  return {static_cast<size_t>(node.mesh), weights.of_node(number), posed ? static_cast<size_t>(node.skin) : SIZE_MAX};
 }
 
 }  // namespace chandelier::baker

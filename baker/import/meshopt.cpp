@@ -10,22 +10,22 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t most_decoded_bytes = 1ull << 34;
+constexpr uint64_t most_decoded_bytes = 1ull << 34;
 
-void apply_filter(const std::string& filter, std::vector<std::uint8_t>& data, std::size_t count, std::size_t stride) {
+void apply_filter(const std::string& filter, std::vector<uint8_t>& data, size_t count, size_t stride) {
   if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(data.data(), count, stride);
   if (filter == "QUATERNION") meshopt_decodeFilterQuat(data.data(), count, stride);
   if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(data.data(), count, stride);
 }
 
-Buffer decode_view(const Gltf& gltf, std::size_t number, const char* extension) {
+Buffer decode_view(const Gltf& gltf, size_t number, const char* extension) {
   const Json& json = gltf.json["bufferViews"][number]["extensions"][extension];
   const std::string where = gltf.file + ": " + place(gltf.json, "bufferViews", number) + ", " + extension;
-  const auto count = json["count"].get<std::size_t>(), stride = json["byteStride"].get<std::size_t>();
-  const auto bytes = buffer_bytes(gltf, json["buffer"].get<std::size_t>(), json.value("byteOffset", std::uint64_t{0}),
-                                  json["byteLength"].get<std::uint64_t>(), where + ":");
+  const auto count = json["count"].get<size_t>(), stride = json["byteStride"].get<size_t>();
+  const auto bytes = buffer_bytes(gltf, json["buffer"].get<size_t>(), json.value("byteOffset", uint64_t{0}),
+                                  json["byteLength"].get<uint64_t>(), where + ":");
   const std::string mode = json["mode"].get<std::string>();
-  std::vector<std::uint8_t> out(count * stride);
+  std::vector<uint8_t> out(count * stride);
   const int fault =
       mode == "ATTRIBUTES"  ? meshopt_decodeVertexBuffer(out.data(), count, stride, bytes.data(), bytes.size())
       : mode == "TRIANGLES" ? meshopt_decodeIndexBuffer(out.data(), count, stride, bytes.data(), bytes.size())
@@ -43,18 +43,18 @@ Buffer decode_view(const Gltf& gltf, std::size_t number, const char* extension) 
 void decode_meshopt_views(Gltf& gltf) {
   gltf.decoded_views.resize(gltf.model.bufferViews.size());
   std::vector<const char*> extensions(gltf.decoded_views.size(), nullptr);
-  std::uint64_t total = 0;
-  for (std::size_t i = 0; i < extensions.size(); ++i) {
+  uint64_t total = 0;
+  for (size_t i = 0; i < extensions.size(); ++i) {
     const Json& view = gltf.json["bufferViews"][i];
     extensions[i] = meshopt_extension(view);
-    if (extensions[i]) total += view["byteLength"].get<std::uint64_t>();
+    if (extensions[i]) total += view["byteLength"].get<uint64_t>();
     if (total > most_decoded_bytes) {
       fail(gltf.file + ": " + place(gltf.json, "bufferViews", i), "the compressed views up to here have more than " +
                                                                       std::to_string(most_decoded_bytes) + " bytes (" +
                                                                       std::to_string(total) + ")");
     }
   }
-  tbb::parallel_for(std::size_t{0}, extensions.size(), [&](std::size_t i) {
+  tbb::parallel_for(size_t{0}, extensions.size(), [&](size_t i) {
     if (!extensions[i]) return;
     try {
       gltf.decoded_views[i] = decode_view(gltf, i, extensions[i]);

@@ -9,11 +9,11 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::uint64_t most_morphed = 1ull << 30;  // few bytes of a file can ask for any number of targets
+constexpr uint64_t most_morphed = 1ull << 30;  // few bytes of a file can ask for any number of targets
 
 /// Calls `add(vertex, weight · delta)` for each vertex.
 template <typename Add>
-void apply(const VertexSource& source, std::size_t target, const char* name, std::vector<Vertex>& vertices, Add add) {
+void apply(const VertexSource& source, size_t target, const char* name, std::vector<Vertex>& vertices, Add add) {
   const auto& attributes = source.primitive.targets[target];
   const auto it = attributes.find(name);
   if (it == attributes.end()) return;
@@ -25,11 +25,11 @@ void apply(const VertexSource& source, std::size_t target, const char* name, std
   }
   const double weight = source.morph_weights[target];
   FirstFault not_finite;
-  for_blocks(vertices.size(), [&](std::size_t first, std::size_t count) {
+  for_blocks(vertices.size(), [&](size_t first, size_t count) {
     std::array<float, 3 * 1024> values;
-    const std::size_t bad = to_floats(deltas, first, count, values.data());
+    const size_t bad = to_floats(deltas, first, count, values.data());
     if (bad != SIZE_MAX) return not_finite.note(bad);
-    for (std::size_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < count; ++i) {
       add(vertices[first + i], weight * glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]));
     }
   });
@@ -46,32 +46,32 @@ bool is_finite(const glm::vec3& v) {
 
 }  // namespace
 
-std::uint32_t MorphWeights::number_of(const Json& owner) {
+uint32_t MorphWeights::number_of(const Json& owner) {
   auto weights = owner.value("weights", std::vector<double>());
   const bool any = std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0; });
   if (!any) weights.clear();
-  const auto [it, added] = numbers_.try_emplace(std::move(weights), static_cast<std::uint32_t>(by_number_.size()));
+  const auto [it, added] = numbers_.try_emplace(std::move(weights), static_cast<uint32_t>(by_number_.size()));
   if (added) by_number_.push_back(&it->first);
   return it->second;
 }
 
-std::uint32_t MorphWeights::of_node(std::size_t number) {
+uint32_t MorphWeights::of_node(size_t number) {
   const Json& node = gltf_.json["nodes"][number];
   if (node.contains("weights")) return number_of(node);
-  const auto mesh = node["mesh"].get<std::size_t>();
+  const auto mesh = node["mesh"].get<size_t>();
   const auto known = of_mesh_.find(mesh);
   if (known != of_mesh_.end()) return known->second;
   return of_mesh_[mesh] = number_of(gltf_.json["meshes"][mesh]);
 }
 
 void add_morph_size(const Gltf& gltf, const tinygltf::Primitive& primitive, std::span<const double> weights,
-                    const std::string& where, std::uint64_t& morphed) {
+                    const std::string& where, uint64_t& morphed) {
   if (weights.empty()) return;
   if (weights.size() != primitive.targets.size()) {
     fail(where, "has another count of morph targets than its weights, which are " + std::to_string(weights.size()) +
                     " (" + std::to_string(primitive.targets.size()) + ")");
   }
-  for (std::size_t t = 0; t < weights.size(); ++t) {
+  for (size_t t = 0; t < weights.size(); ++t) {
     if (weights[t] == 0) continue;
     for (const auto& [name, accessor] : primitive.targets[t]) {
       morphed += checked_accessor(gltf, accessor, where + ", morph target " + std::to_string(t) + ", " + name).count;
@@ -84,7 +84,7 @@ void add_morph_size(const Gltf& gltf, const tinygltf::Primitive& primitive, std:
 }
 
 bool apply_morphs(const VertexSource& source, Primitive& out) {
-  for (std::size_t t = 0; t < source.morph_weights.size(); ++t) {
+  for (size_t t = 0; t < source.morph_weights.size(); ++t) {
     if (source.morph_weights[t] == 0) continue;
     apply(source, t, "POSITION", out.vertices,
           [](Vertex& v, const glm::dvec3& delta) { v.position_ls = moved(v.position_ls, delta); });
@@ -99,7 +99,7 @@ bool apply_morphs(const VertexSource& source, Primitive& out) {
     }
   }
   bool broken = false;
-  for (std::size_t i = 0; i < out.vertices.size(); ++i) {
+  for (size_t i = 0; i < out.vertices.size(); ++i) {
     Vertex& vertex = out.vertices[i];
     if (!is_finite(vertex.position_ls)) {
       fail(source.where + ", attribute POSITION",
@@ -114,7 +114,7 @@ bool apply_morphs(const VertexSource& source, Primitive& out) {
 }
 
 std::string unread_morph(const VertexSource& source) {
-  for (std::size_t t = 0; t < source.morph_weights.size(); ++t) {
+  for (size_t t = 0; t < source.morph_weights.size(); ++t) {
     if (source.morph_weights[t] == 0) continue;
     for (const auto& [name, accessor] : source.primitive.targets[t]) {
       if (name != "POSITION" && name != "NORMAL" && name != "TANGENT") return name;

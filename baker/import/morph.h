@@ -2,6 +2,7 @@
 // Applies morph targets with the file's own weights.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <vector>
@@ -17,24 +18,24 @@ class MorphWeights {
   explicit MorphWeights(const Gltf& gltf) : gltf_(gltf) {}
 
   /// The number of the weights of the mesh that a node shows: the node's own, else the mesh's. It must have a mesh.
-  std::uint32_t of_node(std::size_t node);
+  uint32_t of_node(size_t node);
 
   /// One per morph target. Empty where all are 0: the base mesh.
-  const std::vector<double>& operator[](std::uint32_t number) const { return *by_number_[number]; }
+  const std::vector<double>& operator[](uint32_t number) const { return *by_number_[number]; }
 
  private:
-  std::uint32_t number_of(const Json& owner);
+  uint32_t number_of(const Json& owner);
 
   const Gltf& gltf_;
-  std::map<std::vector<double>, std::uint32_t> numbers_;
+  std::map<std::vector<double>, uint32_t> numbers_;
   std::vector<const std::vector<double>*> by_number_;  // keys of numbers_
-  std::map<std::size_t, std::uint32_t> of_mesh_;       // those that were asked for
+  std::map<size_t, uint32_t> of_mesh_;                 // those that were asked for
 };
 
 /// Adds what a primitive's targets move to `morphed`, in vertices, before anything of it is read. Throws Error where
 /// weights do not suit targets, or above 2^30.
 void add_morph_size(const Gltf& gltf, const tinygltf::Primitive& primitive, std::span<const double> weights,
-                    const std::string& where, std::uint64_t& morphed);
+                    const std::string& where, uint64_t& morphed);
 
 /// Moves the primitive's vertices by its targets, each times its weight. Returns whether a normal has no direction any
 /// more. Throws Error.

@@ -13,7 +13,7 @@
 namespace chandelier::baker {
 namespace {
 
-using Flags = std::vector<std::uint8_t>;
+using Flags = std::vector<uint8_t>;
 
 bool carries(const tinygltf::Node& node, bool visible) {
   if (node.camera >= 0) return true;
@@ -52,19 +52,19 @@ Node node_record(const tinygltf::Node& in, const glm::dmat4& parent_from_local) 
 }
 
 /// Rows and columns as glTF has them: columns first.
-glm::mat4 matrix_at(const std::vector<float>& values, std::size_t i) {
+glm::mat4 matrix_at(const std::vector<float>& values, size_t i) {
   glm::mat4 out;
-  for (int k = 0; k < 16; ++k) out[k / 4][k % 4] = values[16 * i + static_cast<std::size_t>(k)];
+  for (int k = 0; k < 16; ++k) out[k / 4][k % 4] = values[16 * i + static_cast<size_t>(k)];
   return out;
 }
 
 std::vector<glm::mat4> read_bind_matrices(const Gltf& gltf, const Json& skin, const std::string& where) {
-  const std::size_t joints = skin["joints"].size();
+  const size_t joints = skin["joints"].size();
   std::vector<glm::mat4> out(joints, glm::mat4(1));
   if (!skin.contains("inverseBindMatrices")) return out;
   const int accessor = skin["inverseBindMatrices"].get<int>();
   const std::string here = where + ", inverseBindMatrices";
-  if (gltf.model.accessors[static_cast<std::size_t>(accessor)].componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+  if (gltf.model.accessors[static_cast<size_t>(accessor)].componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
     fail(here, "component type is not float");
   }
   const Floats floats = read_floats(gltf, accessor, 16, 16, here);
@@ -72,7 +72,7 @@ std::vector<glm::mat4> read_bind_matrices(const Gltf& gltf, const Json& skin, co
     fail(here, "has fewer matrices than there are joints, " + std::to_string(joints) + " (" +
                    std::to_string(floats.count) + ")");
   }
-  for (std::size_t i = 0; i < joints; ++i) {
+  for (size_t i = 0; i < joints; ++i) {
     out[i] = matrix_at(floats.values, i);
     for (int c = 0; c < 4; ++c) {
       if (std::abs(out[i][c][3] - (c == 3 ? 1.0f : 0.0f)) <= 1e-4f) continue;
@@ -88,11 +88,11 @@ Flags used_skins(const Gltf& gltf, const std::vector<PlacedNode>& placed, const 
   Flags used(gltf.json.contains("skins") ? gltf.json["skins"].size() : 0, 0);
   for (const PlacedNode& each : placed) {
     const tinygltf::Node& node = gltf.model.nodes[each.node];
-    if (each.visible && node.skin >= 0 && node.mesh >= 0) used[static_cast<std::size_t>(node.skin)] = 1;
+    if (each.visible && node.skin >= 0 && node.mesh >= 0) used[static_cast<size_t>(node.skin)] = 1;
   }
-  for (std::size_t s = 0; s < used.size(); ++s) {
+  for (size_t s = 0; s < used.size(); ++s) {
     for (const Json& joint : gltf.json["skins"][s]["joints"]) {
-      if (!used[s] || in_scene[joint.get<std::size_t>()]) continue;
+      if (!used[s] || in_scene[joint.get<size_t>()]) continue;
       warnings.add(gltf.file, place(gltf.json, "skins", s), "a joint is not in the scene, so the skin is ignored");
       used[s] = 0;
     }
@@ -103,7 +103,7 @@ Flags used_skins(const Gltf& gltf, const std::vector<PlacedNode>& placed, const 
 /// Whether an animation moves one of a skin's joints.
 bool moves(const Motion& motion, const Json& skin) {
   return std::any_of(skin["joints"].begin(), skin["joints"].end(),
-                     [&](const Json& joint) { return motion.moves[joint.get<std::size_t>()] != 0; });
+                     [&](const Json& joint) { return motion.moves[joint.get<size_t>()] != 0; });
 }
 
 /// Whether joints that stand as they do show a mesh as its bind pose, moved as a whole. `places`: the joints' in the
@@ -124,7 +124,7 @@ bool is_bind_pose(const std::vector<glm::dmat4>& world_from_bind, const std::vec
 }
 
 /// Skins whose joints an animation moves go into the scene; of others only the pose is kept.
-void add_skin(const Gltf& gltf, std::size_t number, const std::vector<glm::dmat4>& world, Motion& motion, Scene& scene,
+void add_skin(const Gltf& gltf, size_t number, const std::vector<glm::dmat4>& world, Motion& motion, Scene& scene,
               Warnings& warnings) {
   const Json& json = gltf.json["skins"][number];
   const std::string here = place(gltf.json, "skins", number);
@@ -133,8 +133,8 @@ void add_skin(const Gltf& gltf, std::size_t number, const std::vector<glm::dmat4
   std::vector<glm::dvec3> places;
   Skin skin;
   skin.name = json.value("name", "");
-  for (std::size_t i = 0; i < matrices.size(); ++i) {
-    const auto node = json["joints"][i].get<std::size_t>();
+  for (size_t i = 0; i < matrices.size(); ++i) {
+    const auto node = json["joints"][i].get<size_t>();
     pose.world_from_bind.push_back(world[node] * glm::dmat4(matrices[i]));
     places.emplace_back(world[node][3]);
     skin.joints.push_back({motion.node[node], matrices[i]});
@@ -153,17 +153,17 @@ void add_skin(const Gltf& gltf, std::size_t number, const std::vector<glm::dmat4
 }
 
 /// Flags the node and all above it.
-void keep(std::size_t node, const std::vector<std::size_t>& parents, Flags& kept) {
+void keep(size_t node, const std::vector<size_t>& parents, Flags& kept) {
   for (; node != SIZE_MAX && !kept[node]; node = parents[node]) kept[node] = 1;
 }
 
 }  // namespace
 
 Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene& scene, Warnings& warnings) {
-  const std::size_t count = gltf.model.nodes.size();
-  Motion motion{std::vector<std::uint32_t>(count, no_index), Flags(count, 0), {}, {}, {}};
+  const size_t count = gltf.model.nodes.size();
+  Motion motion{std::vector<uint32_t>(count, no_index), Flags(count, 0), {}, {}, {}};
   Flags in_scene(count, 0), kept(count, 0);
-  std::vector<std::size_t> parents(count, SIZE_MAX);
+  std::vector<size_t> parents(count, SIZE_MAX);
   std::vector<glm::dmat4> world(count);
   for (const PlacedNode& each : placed) {
     in_scene[each.node] = 1;
@@ -182,9 +182,9 @@ Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene
     if (motion.moves[each.node] && carries(gltf.model.nodes[each.node], each.visible)) keep(each.node, parents, kept);
   }
   const Flags used = used_skins(gltf, placed, in_scene, warnings);
-  for (std::size_t s = 0; s < used.size(); ++s) {
+  for (size_t s = 0; s < used.size(); ++s) {
     if (!used[s] || !moves(motion, gltf.json["skins"][s])) continue;
-    for (const Json& joint : gltf.json["skins"][s]["joints"]) keep(joint.get<std::size_t>(), parents, kept);
+    for (const Json& joint : gltf.json["skins"][s]["joints"]) keep(joint.get<size_t>(), parents, kept);
   }
   for (const PlacedNode& each : placed) {
     if (!kept[each.node]) continue;
@@ -195,7 +195,7 @@ Motion add_motion(const Gltf& gltf, const std::vector<PlacedNode>& placed, Scene
   motion.skin.assign(used.size(), no_index);
   motion.pose.resize(used.size());
   motion.placed.assign(used.size(), glm::dmat4(1));
-  for (std::size_t s = 0; s < used.size(); ++s) {
+  for (size_t s = 0; s < used.size(); ++s) {
     if (used[s]) add_skin(gltf, s, world, motion, scene, warnings);
   }
   for (Animation& animation : animations) {

@@ -33,23 +33,23 @@ glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where)
 }
 
 /// KHR_node_visibility.
-bool is_visible(const Gltf& gltf, std::size_t node) {
+bool is_visible(const Gltf& gltf, size_t node) {
   static const Json::json_pointer pointer("/extensions/KHR_node_visibility/visible");
   return gltf.json["nodes"][node].value(pointer, true);
 }
 
-std::vector<std::size_t> root_nodes(const Gltf& gltf, std::optional<std::size_t> scene) {
+std::vector<size_t> root_nodes(const Gltf& gltf, std::optional<size_t> scene) {
   const tinygltf::Model& model = gltf.model;
   if (scene) {
     const auto& nodes = model.scenes[*scene].nodes;
     return {nodes.begin(), nodes.end()};
   }
-  std::vector<std::uint8_t> is_child(model.nodes.size(), 0);
+  std::vector<uint8_t> is_child(model.nodes.size(), 0);
   for (const tinygltf::Node& node : model.nodes) {
     for (int child : node.children) is_child[child] = 1;
   }
-  std::vector<std::size_t> roots;
-  for (std::size_t i = 0; i < is_child.size(); ++i) {
+  std::vector<size_t> roots;
+  for (size_t i = 0; i < is_child.size(); ++i) {
     if (!is_child[i]) roots.push_back(i);
   }
   return roots;
@@ -76,9 +76,9 @@ std::string name_of(const tinygltf::Node& node, const std::string& own) {
   return node.name.empty() ? own : node.name;
 }
 
-std::vector<PlacedNode> place_nodes(const Gltf& gltf, std::optional<std::size_t> scene) {
+std::vector<PlacedNode> place_nodes(const Gltf& gltf, std::optional<size_t> scene) {
   std::vector<PlacedNode> out;
-  std::vector<std::uint8_t> seen(gltf.model.nodes.size(), 0);
+  std::vector<uint8_t> seen(gltf.model.nodes.size(), 0);
   std::vector<PlacedNode> open;  // a stack of nodes with their parents' transforms: any depth
   const auto roots = root_nodes(gltf, scene);
   for (auto it = roots.rbegin(); it != roots.rend(); ++it) open.push_back({*it, glm::dmat4(1)});
@@ -95,8 +95,7 @@ std::vector<PlacedNode> place_nodes(const Gltf& gltf, std::optional<std::size_t>
     placed.visible = placed.visible && is_visible(gltf, placed.node);
     out.push_back(placed);
     for (auto it = node.children.rbegin(); it != node.children.rend(); ++it) {
-      open.push_back(
-          {static_cast<std::size_t>(*it), placed.world_from_local, glm::dmat4(1), placed.node, placed.visible});
+      open.push_back({static_cast<size_t>(*it), placed.world_from_local, glm::dmat4(1), placed.node, placed.visible});
     }
   }
   return out;
@@ -116,7 +115,7 @@ bool is_degenerate(const glm::dmat4& transform) {
 void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings) {
   const tinygltf::Node& node = gltf.model.nodes[placed.node];
   if (node.camera < 0) return;
-  const tinygltf::Camera& in = gltf.model.cameras[static_cast<std::size_t>(node.camera)];
+  const tinygltf::Camera& in = gltf.model.cameras[static_cast<size_t>(node.camera)];
   const std::string here = place(gltf.json, "nodes", placed.node);
   if (in.type != "perspective") {
     warnings.add(gltf.file, here, "an orthographic camera is skipped");

@@ -2,6 +2,7 @@
 // The node tree: where meshes, lights and cameras stand in the world; cameras.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "../scene.h"
@@ -10,15 +11,15 @@
 namespace chandelier::baker {
 
 struct PlacedNode {
-  std::size_t node;
+  size_t node;
   glm::dmat4 world_from_local;
   glm::dmat4 parent_from_local{1};
-  std::size_t parent = SIZE_MAX;  // the node above it
-  bool visible = true;            // it and all above it (KHR_node_visibility)
+  size_t parent = SIZE_MAX;  // the node above it
+  bool visible = true;       // it and all above it (KHR_node_visibility)
 };
 
 /// The nodes of a scene (all roots where there is none), parents first. Throws Error.
-std::vector<PlacedNode> place_nodes(const Gltf& gltf, std::optional<std::size_t> scene);
+std::vector<PlacedNode> place_nodes(const Gltf& gltf, std::optional<size_t> scene);
 
 /// Appends the node's camera to the scene, where it has one. Throws Error.
 void add_camera(const Gltf& gltf, const PlacedNode& placed, Scene& scene, Warnings& warnings);

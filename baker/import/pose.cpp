@@ -14,7 +14,7 @@ namespace {
 
 glm::dmat4 blended(const Pose& pose, const SkinVertex& vertex) {
   glm::dmat4 out(0);
-  for (std::size_t k = 0; k < 4; ++k) {
+  for (size_t k = 0; k < 4; ++k) {
     if (vertex.weights[k] != 0) out += pose.world_from_bind[vertex.joints[k]] * (vertex.weights[k] / 65535.0);
   }
   return out;
@@ -45,12 +45,12 @@ int move(const Pose& pose, const SkinVertex& bound, Vertex& vertex) {
 
 void apply_pose(const Pose& pose, const std::string& where, Mesh& mesh) {
   for (Primitive& primitive : mesh.primitives) {
-    std::vector<std::int8_t> sides(primitive.vertices.size());
+    std::vector<int8_t> sides(primitive.vertices.size());
     FirstFault beyond;
-    for_blocks(sides.size(), [&](std::size_t first, std::size_t count) {
-      for (std::size_t i = first; i < first + count; ++i) {
+    for_blocks(sides.size(), [&](size_t first, size_t count) {
+      for (size_t i = first; i < first + count; ++i) {
         Vertex& vertex = primitive.vertices[i];
-        sides[i] = static_cast<std::int8_t>(move(pose, primitive.skin_vertices[i], vertex));
+        sides[i] = static_cast<int8_t>(move(pose, primitive.skin_vertices[i], vertex));
         const glm::vec3& p = vertex.position_ls;
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) beyond.note(i);
       }
@@ -58,8 +58,8 @@ void apply_pose(const Pose& pose, const std::string& where, Mesh& mesh) {
     if (beyond.at() != SIZE_MAX) {
       fail(where, "its skin moves a vertex beyond a float (vertex " + std::to_string(beyond.at()) + ")");
     }
-    for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-      std::uint32_t* corner = &primitive.indices[i];
+    for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+      uint32_t* corner = &primitive.indices[i];
       if (sides[corner[0]] + sides[corner[1]] + sides[corner[2]] < 0) std::swap(corner[1], corner[2]);
     }
     primitive.skin_vertices.clear();

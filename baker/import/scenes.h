@@ -2,6 +2,7 @@
 // Which of a glTF's scenes is imported.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "gltf.h"
@@ -9,9 +10,9 @@
 namespace chandelier::baker {
 
 struct ChosenScene {
-  std::optional<std::size_t> number;  // nothing where the file has no scenes
-  bool asked_for = false;             // it is the one that was asked for
-  std::size_t left_out = 0;           // how many others there are
+  std::optional<size_t> number;  // nothing where the file has no scenes
+  bool asked_for = false;        // it is the one that was asked for
+  size_t left_out = 0;           // how many others there are
 };
 
 /// The scene whose name or number is `asked`. If `asked` is empty, or a file with one scene does not have it, the

@@ -28,22 +28,22 @@ void check_types(const Elements& joints, const Elements& weights, const std::str
 
 }  // namespace
 
-std::array<std::uint16_t, 4> quantize_weights(const std::array<float, 4>& weights) {
+std::array<uint16_t, 4> quantize_weights(const std::array<float, 4>& weights) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (!(sum > 0)) return {65535, 0, 0, 0};
-  std::array<std::uint16_t, 4> out{};
+  std::array<uint16_t, 4> out{};
   std::array<double, 4> remainders{};
   int left = 65535;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (size_t i = 0; i < 4; ++i) {
     const double exact = weights[i] / sum * 65535;
-    out[i] = static_cast<std::uint16_t>(exact);
+    out[i] = static_cast<uint16_t>(exact);
     remainders[i] = exact - out[i];
     left -= out[i];
   }
   for (; left > 0; --left) {  // at most 3, since four remainders are each below 1
     const auto most = std::max_element(remainders.begin(), remainders.end()) - remainders.begin();
-    ++out[static_cast<std::size_t>(most)];
-    remainders[static_cast<std::size_t>(most)] = -1;
+    ++out[static_cast<size_t>(most)];
+    remainders[static_cast<size_t>(most)] = -1;
   }
   return out;
 }
@@ -56,19 +56,19 @@ std::vector<SkinVertex> read_skin_vertices(const Elements& joints, const Element
   const Elements part = {weights.data, weights.stride, weights.count, 4, weights.component_type, true, {}};
   std::vector<SkinVertex> out(joints.count);
   FirstFault not_finite, negative, uneven;
-  for_blocks(out.size(), [&](std::size_t first, std::size_t count) {
+  for_blocks(out.size(), [&](size_t first, size_t count) {
     std::array<float, 4096> numbers, shares;
     to_floats(whole, first, count, numbers.data());
-    const std::size_t bad = to_floats(part, first, count, shares.data());
+    const size_t bad = to_floats(part, first, count, shares.data());
     if (bad != SIZE_MAX) return not_finite.note(bad);
-    for (std::size_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < count; ++i) {
       const std::array<float, 4> w = {shares[4 * i], shares[4 * i + 1], shares[4 * i + 2], shares[4 * i + 3]};
       if (*std::min_element(w.begin(), w.end()) < 0) return negative.note(first + i);
       if (std::abs(w[0] + w[1] + w[2] + w[3] - 1) > whole_tolerance) uneven.note(first + i);
       SkinVertex& vertex = out[first + i];
       vertex.weights = quantize_weights(w);
-      for (std::size_t k = 0; k < 4; ++k) {
-        vertex.joints[k] = vertex.weights[k] ? static_cast<std::uint16_t>(numbers[4 * i + k]) : std::uint16_t{0};
+      for (size_t k = 0; k < 4; ++k) {
+        vertex.joints[k] = vertex.weights[k] ? static_cast<uint16_t>(numbers[4 * i + k]) : uint16_t{0};
       }
     }
   });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "../scene.h"
 #include "accessor.h"
@@ -11,7 +12,7 @@ namespace chandelier::baker {
 
 /// Weights as unorm16 that sum to exactly 65535, by largest remainder. None may be negative; all zero: the first has
 /// all.
-std::array<std::uint16_t, 4> quantize_weights(const std::array<float, 4>& weights);
+std::array<uint16_t, 4> quantize_weights(const std::array<float, 4>& weights);
 
 /// JOINTS_0 and WEIGHTS_0 of every vertex. A joint without weight is joint 0. Throws Error; what is mended is told in
 /// `warnings`.

@@ -11,7 +11,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t most_components = 4;
+constexpr size_t most_components = 4;
 
 struct Attribute {
   std::string where;
@@ -21,26 +21,26 @@ struct Attribute {
 
 /// Calls `put(vertex, values)` for each vertex of a block.
 template <typename Put>
-void fill(Attribute& attribute, std::size_t first, std::size_t count, std::vector<Vertex>& vertices, Put put) {
+void fill(Attribute& attribute, size_t first, size_t count, std::vector<Vertex>& vertices, Put put) {
   if (attribute.elements.count == 0) return;
   float values[1024 * most_components];
-  const std::size_t bad = to_floats(attribute.elements, first, count, values);
+  const size_t bad = to_floats(attribute.elements, first, count, values);
   if (bad != SIZE_MAX) return attribute.not_finite.note(bad);
   const float* each = values;
-  for (std::size_t i = first; i < first + count; ++i, each += attribute.elements.components) put(vertices[i], each);
+  for (size_t i = first; i < first + count; ++i, each += attribute.elements.components) put(vertices[i], each);
 }
 
-std::uint32_t pack_color(const float* rgb, std::size_t components) {
-  std::uint32_t out = 0;
-  for (std::size_t c = 0; c < 4; ++c) {
+uint32_t pack_color(const float* rgb, size_t components) {
+  uint32_t out = 0;
+  for (size_t c = 0; c < 4; ++c) {
     const float value = c < components ? std::clamp(rgb[c], 0.0f, 1.0f) : 1.0f;
-    out |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << (8 * c);
+    out |= static_cast<uint32_t>(std::lround(value * 255.0f)) << (8 * c);
   }
   return out;
 }
 
-glm::vec3 area_normal(const Primitive& primitive, std::size_t triangle) {
-  const auto corner = [&](std::size_t c) {
+glm::vec3 area_normal(const Primitive& primitive, size_t triangle) {
+  const auto corner = [&](size_t c) {
     return glm::dvec3(primitive.vertices[primitive.indices[3 * triangle + c]].position_ls);
   };
   const glm::dvec3 cross = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
@@ -50,20 +50,20 @@ glm::vec3 area_normal(const Primitive& primitive, std::size_t triangle) {
 
 /// Normals without a direction become that of a triangle at the vertex.
 void mend_normals(Primitive& primitive) {
-  std::vector<std::uint8_t> broken(primitive.vertices.size(), 0);
-  for (std::size_t i = 0; i < broken.size(); ++i) {
+  std::vector<uint8_t> broken(primitive.vertices.size(), 0);
+  for (size_t i = 0; i < broken.size(); ++i) {
     broken[i] = primitive.vertices[i].normal_ls == glm::vec3(0);
     if (broken[i]) primitive.vertices[i].normal_ls = {0, 1, 0};
   }
-  for (std::size_t t = 0; t < primitive.indices.size() / 3; ++t) {
+  for (size_t t = 0; t < primitive.indices.size() / 3; ++t) {
     const glm::vec3 normal = area_normal(primitive, t);
     if (normal == glm::vec3(0)) continue;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t v = primitive.indices[3 * t + c];
+    for (size_t c = 0; c < 3; ++c) {
+      const uint32_t v = primitive.indices[3 * t + c];
       if (broken[v]) primitive.vertices[v].normal_ls = normal;
     }
   }
-  for (std::size_t i = 0; i < broken.size(); ++i) {
+  for (size_t i = 0; i < broken.size(); ++i) {
     Vertex& vertex = primitive.vertices[i];
     if (broken[i]) vertex.tangent_ls = glm::vec4(some_tangent(vertex.normal_ls), vertex.tangent_ls.w);
   }
@@ -74,7 +74,7 @@ struct Attributes {
 };
 
 Attributes open_attributes(const VertexSource& source) {
-  const auto open = [&](const char* name, std::size_t least, std::size_t most) {
+  const auto open = [&](const char* name, size_t least, size_t most) {
     return Attribute{source.where + ", attribute " + name, attribute_of(source, name, least, most)};
   };
   return {open("POSITION", 3, 3),   open("NORMAL", 3, 3),     open("TANGENT", 4, 4),
@@ -82,9 +82,9 @@ Attributes open_attributes(const VertexSource& source) {
 }
 
 /// Returns whether a normal has no direction.
-bool fill_block(Attributes& in, std::size_t first, std::size_t count, std::vector<Vertex>& vertices) {
+bool fill_block(Attributes& in, size_t first, size_t count, std::vector<Vertex>& vertices) {
   bool broken = false;
-  const std::size_t color_components = in.color.elements.components;
+  const size_t color_components = in.color.elements.components;
   const bool has_tangents = in.tangent.elements.count > 0;
   fill(in.position, first, count, vertices, [](Vertex& v, const float* p) { v.position_ls = {p[0], p[1], p[2]}; });
   fill(in.normal, first, count, vertices, [&](Vertex& v, const float* n) {
@@ -95,7 +95,7 @@ bool fill_block(Attributes& in, std::size_t first, std::size_t count, std::vecto
     const glm::vec3 unit = unit_or_zero({t[0], t[1], t[2]});
     v.tangent_ls = glm::vec4(unit == glm::vec3(0) ? some_tangent(v.normal_ls) : unit, t[3] < 0 ? -1.0f : 1.0f);
   });
-  for (std::size_t i = first; !has_tangents && i < first + count; ++i) {
+  for (size_t i = first; !has_tangents && i < first + count; ++i) {
     vertices[i].tangent_ls = glm::vec4(some_tangent(vertices[i].normal_ls), 1);
   }
   fill(in.uv0, first, count, vertices, [](Vertex& v, const float* uv) { v.uv0 = {uv[0], uv[1]}; });
@@ -117,7 +117,7 @@ glm::vec3 some_tangent(const glm::vec3& n) {
   return glm::normalize(axis - n * glm::dot(n, axis));
 }
 
-Elements attribute_of(const VertexSource& source, const char* name, std::size_t least, std::size_t most) {
+Elements attribute_of(const VertexSource& source, const char* name, size_t least, size_t most) {
   const auto it = source.primitive.attributes.find(name);
   if (it == source.primitive.attributes.end()) return {};
   const std::string where = source.where + ", attribute " + name;
@@ -151,7 +151,7 @@ void read_vertices(const VertexSource& source, Primitive& out) {
   out.needs_tangents = in.tangent.elements.count == 0;
   out.vertices.resize(source.vertex_count);
   std::atomic<bool> broken{false};
-  for_blocks(out.vertices.size(), [&](std::size_t first, std::size_t count) {
+  for_blocks(out.vertices.size(), [&](size_t first, size_t count) {
     if (fill_block(in, first, count, out.vertices)) broken = true;
   });
   for (const Attribute* each : {&in.position, &in.normal, &in.tangent, &in.uv0, &in.uv1, &in.color}) {

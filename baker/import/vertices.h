@@ -2,6 +2,8 @@
 // A primitive's attributes, put together into vertices.
 #pragma once
 
+#include <cstddef>
+
 #include "../scene.h"
 #include "draco.h"
 
@@ -13,12 +15,12 @@ struct VertexSource {
   const tinygltf::Primitive& primitive;
   const DracoPrimitive* draco;  // nullptr, or where some of the attributes are
   const std::string& where;
-  std::size_t vertex_count;
+  size_t vertex_count;
   std::span<const double> morph_weights;  // one per morph target, or none
 };
 
 /// An attribute's elements, one per vertex; a count of 0 where the primitive has none. Throws Error.
-Elements attribute_of(const VertexSource& source, const char* name, std::size_t least, std::size_t most);
+Elements attribute_of(const VertexSource& source, const char* name, size_t least, size_t most);
 
 /// Unit length, or zero where it has no direction.
 glm::vec3 unit_or_zero(const glm::vec3& v);

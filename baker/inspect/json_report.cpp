@@ -25,10 +25,10 @@ std::string name(const pack::File& file, const pack::StringRef& ref) {
 
 Json sections(const pack::View& view, const Summary& summary) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
+  for (size_t i = 0; i < pack::section_infos.size(); ++i) {
     const pack::SectionInfo& info = pack::section_infos[i];
-    const std::size_t bytes = pack::section_bytes(view, i).size();
-    list.push_back({{"kind", static_cast<std::uint32_t>(info.kind)},
+    const size_t bytes = pack::section_bytes(view, i).size();
+    list.push_back({{"kind", static_cast<uint32_t>(info.kind)},
                     {"name", info.name},
                     {"count", bytes / info.stride_bytes},
                     {"stride_bytes", info.stride_bytes},

@@ -23,19 +23,19 @@ class Gather {
  private:
   Spread spread_;
   double sum_ = 0;
-  std::uint64_t count_ = 0;
+  uint64_t count_ = 0;
 };
 
 void add_lights(const pack::View& view, Summary& summary) {
   Gather ranges, intensities;
   for (const pack::Light& light : view.lights) {
-    ++summary.lights_of_type[static_cast<std::size_t>(light.type)];
-    ++summary.lights_of_source[static_cast<std::size_t>(light.range_source)];
+    ++summary.lights_of_type[static_cast<size_t>(light.type)];
+    ++summary.lights_of_source[static_cast<size_t>(light.range_source)];
     summary.dynamic_lights += light.dynamic;
     summary.unclustered_lights += light.unclustered;
     summary.shadowless_lights += light.shadowless;
     summary.grouped_lights += light.group != 0;
-    summary.light_groups = std::max<std::uint64_t>(summary.light_groups, light.group);  // numbered from 1
+    summary.light_groups = std::max<uint64_t>(summary.light_groups, light.group);  // numbered from 1
     if (light.range_source != pack::RangeSource::unbounded) ranges.add(light.range_m);
     if (light.type != pack::LightType::directional) intensities.add(light.intensity);
   }
@@ -47,11 +47,11 @@ void add_lights(const pack::View& view, Summary& summary) {
 template <typename Node, typename End>
 Hierarchy hierarchy(std::span<const Node> nodes, End end_of) {
   Hierarchy result{nodes.size(), 0};
-  std::vector<std::uint64_t> ends;  // of the subtrees around the node, outermost first
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
+  std::vector<uint64_t> ends;  // of the subtrees around the node, outermost first
+  for (size_t i = 0; i < nodes.size(); ++i) {
     while (!ends.empty() && ends.back() <= i) ends.pop_back();
     ends.push_back(end_of(nodes[i]));
-    result.depth = std::max<std::uint64_t>(result.depth, ends.size());
+    result.depth = std::max<uint64_t>(result.depth, ends.size());
   }
   return result;
 }
@@ -77,8 +77,8 @@ void add_voxels(const pack::View& view, Summary& summary) {
 std::vector<Stored> stored_sections(const pack::File& file) {
   std::vector<Stored> stored(pack::section_infos.size());
   for (const pack::SectionEntry& entry : file.table()) {
-    for (std::size_t i = 0; i < stored.size(); ++i) {
-      if (static_cast<std::uint32_t>(pack::section_infos[i].kind) == entry.kind) {
+    for (size_t i = 0; i < stored.size(); ++i) {
+      if (static_cast<uint32_t>(pack::section_infos[i].kind) == entry.kind) {
         stored[i] = {entry.codec, entry.size_bytes};
       }
     }
@@ -89,7 +89,7 @@ std::vector<Stored> stored_sections(const pack::File& file) {
 std::vector<std::string> split_lines(std::string_view text) {
   std::vector<std::string> lines;
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
+    const size_t end = std::min(text.find('\n'), text.size());
     lines.emplace_back(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
@@ -109,7 +109,7 @@ Summary summarize(const pack::File& file) {
   }
   summary.batch_triangles = triangles.spread();
   for (const pack::BatchInstance& draw : view.batch_instances) {
-    const std::uint64_t drawn = view.batches[draw.batch].index_count / 3;
+    const uint64_t drawn = view.batches[draw.batch].index_count / 3;
     summary.drawn_triangles += drawn;
     if (view.instances[draw.instance].dynamic == 0) summary.static_triangles += drawn;
     if (!pack::throws_shadow(view, draw)) summary.shadowless_triangles += drawn;

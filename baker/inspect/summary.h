@@ -19,36 +19,36 @@ struct Spread {
 /// How one section is stored.
 struct Stored {
   pack::Codec codec = pack::Codec::raw;
-  std::uint64_t bytes = 0;  ///< In the file.
+  uint64_t bytes = 0;  ///< In the file.
 };
 
 /// A BVH's nodes, and how many of them lie between a root and its farthest leaf, both counted.
 struct Hierarchy {
-  std::uint64_t nodes = 0, depth = 0;
+  uint64_t nodes = 0, depth = 0;
 };
 
 struct Voxels {
-  std::uint64_t occupied = 0;           ///< Cells that hold a triangle.
-  std::uint64_t triangles = 0;          ///< In cells and in no-cull runs; clipped parts counted each.
-  std::uint64_t no_cull_triangles = 0;  ///< Of those, the ones that no cell holds.
+  uint64_t occupied = 0;           ///< Cells that hold a triangle.
+  uint64_t triangles = 0;          ///< In cells and in no-cull runs; clipped parts counted each.
+  uint64_t no_cull_triangles = 0;  ///< Of those, the ones that no cell holds.
 };
 
 struct Summary {
   std::vector<Stored> stored;  ///< By section_infos.
-  std::uint64_t stored_triangles = 0;
-  std::uint64_t drawn_triangles = 0;
-  std::uint64_t shadowless_triangles = 0;  ///< Of those, the ones that cast no shadow.
-  std::uint64_t static_triangles = 0;      ///< Of those, the ones in instances that stand still.
+  uint64_t stored_triangles = 0;
+  uint64_t drawn_triangles = 0;
+  uint64_t shadowless_triangles = 0;  ///< Of those, the ones that cast no shadow.
+  uint64_t static_triangles = 0;      ///< Of those, the ones in instances that stand still.
   Spread batch_triangles;
-  std::uint64_t masked_materials = 0;
-  std::uint64_t double_sided_materials = 0;
-  std::uint64_t shadowless_materials = 0, shadowless_instances = 0;
-  std::array<std::uint64_t, 3> lights_of_type = {};    ///< By LightType.
-  std::array<std::uint64_t, 3> lights_of_source = {};  ///< By RangeSource.
-  std::uint64_t dynamic_lights = 0, unclustered_lights = 0;
-  std::uint64_t grouped_lights = 0, light_groups = 0, shadowless_lights = 0;
-  std::uint64_t closed_batches = 0;
-  std::uint64_t dynamic_instances = 0, skinned_instances = 0;
+  uint64_t masked_materials = 0;
+  uint64_t double_sided_materials = 0;
+  uint64_t shadowless_materials = 0, shadowless_instances = 0;
+  std::array<uint64_t, 3> lights_of_type = {};    ///< By LightType.
+  std::array<uint64_t, 3> lights_of_source = {};  ///< By RangeSource.
+  uint64_t dynamic_lights = 0, unclustered_lights = 0;
+  uint64_t grouped_lights = 0, light_groups = 0, shadowless_lights = 0;
+  uint64_t closed_batches = 0;
+  uint64_t dynamic_instances = 0, skinned_instances = 0;
   Hierarchy batch_bvh, instance_bvh, triangle_bvh, light_bvh;
   Voxels voxels;
   Spread range_m;                    ///< Of lights with an end.

@@ -26,11 +26,11 @@ std::string printable(std::string_view text) {
   return out;
 }
 
-std::string size_text(std::uint64_t bytes) {
+std::string size_text(uint64_t bytes) {
   if (bytes < 1024) return fmt::format("{} bytes", bytes);
   static constexpr const char* units[] = {"KiB", "MiB", "GiB", "TiB"};
   double value = static_cast<double>(bytes) / 1024;
-  std::size_t unit = 0;
+  size_t unit = 0;
   for (; value >= 1024 && unit < 3; ++unit) value /= 1024;
   return fmt::format("{:.1f} {}", value, units[unit]);
 }
@@ -49,9 +49,9 @@ std::string place_text(const glm::vec3& p_ws, const pack::BakeInfo& info) {
 void put_sections(Out out, const pack::View& view, const Summary& summary) {
   fmt::format_to(out, "\n{:<20}{:>12}{:>8}{:>16}{:>16}  {}\n", "section", "count", "stride", "bytes", "stored",
                  "codec");
-  for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
+  for (size_t i = 0; i < pack::section_infos.size(); ++i) {
     const pack::SectionInfo& info = pack::section_infos[i];
-    const std::size_t bytes = pack::section_bytes(view, i).size();
+    const size_t bytes = pack::section_bytes(view, i).size();
     if (bytes == 0) continue;
     fmt::format_to(out, "{:<20}{:>12}{:>8}{:>16}{:>16}  {}\n", info.name, bytes / info.stride_bytes, info.stride_bytes,
                    bytes, summary.stored[i].bytes, name_of(summary.stored[i].codec));
@@ -59,7 +59,7 @@ void put_sections(Out out, const pack::View& view, const Summary& summary) {
 }
 
 /// "37.5 %" of what there is.
-std::string share(std::uint64_t part, std::uint64_t whole) {
+std::string share(uint64_t part, uint64_t whole) {
   return fmt::format("{:.1f} %", whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole));
 }
 
@@ -112,7 +112,7 @@ void put_animations(Out out, const pack::File& file) {
 
 void put_images(Out out, const pack::File& file) {
   const pack::View& view = file.view();
-  std::uint64_t bytes = 0;
+  uint64_t bytes = 0;
   for (const pack::Image& image : view.images) bytes += image.size_bytes;
   fmt::format_to(out, "images     {}, {}, stored as {}\n", view.images.size(), size_text(bytes),
                  size_text(view.image_data.size()));

@@ -2,6 +2,7 @@
 #include "lights/map_candidates.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "lights/pack_lights.h"
@@ -30,7 +31,7 @@ void MapCandidates::nearest(uint32_t light, std::span<const uint32_t> centers, s
     if (center != light && places_[center].kind == from.kind)
       others.push_back({glm::distance(from.at, places_[center].at), center});
   const size_t kept = std::min(most, others.size());
-  std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(kept), others.end());
+  std::partial_sort(others.begin(), others.begin() + static_cast<ptrdiff_t>(kept), others.end());
   for (size_t i = 0; i < kept; ++i) found.push_back(others[i].second);
 }
 

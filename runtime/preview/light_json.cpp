@@ -186,7 +186,7 @@ void read_lights(const Json& json, Request& request) {
 template <typename Choice>
 std::vector<std::string_view> names_up_to(Choice last) {
   std::vector<std::string_view> names;
-  for (const Answer& each : answers_of(last).first(static_cast<std::size_t>(last) + 1)) names.push_back(each.name);
+  for (const Answer& each : answers_of(last).first(static_cast<size_t>(last) + 1)) names.push_back(each.name);
   return names;
 }
 

@@ -14,8 +14,8 @@ namespace chandelier::truth {
 namespace {
 
 std::vector<uint8_t> alpha_of_rgba8(const pack::Image& image, std::span<const std::byte> texels) {
-  std::vector<uint8_t> alpha(std::size_t{image.width} * image.height);
-  for (std::size_t i = 0; i < alpha.size(); ++i) alpha[i] = std::to_integer<uint8_t>(texels[4 * i + 3]);
+  std::vector<uint8_t> alpha(size_t{image.width} * image.height);
+  for (size_t i = 0; i < alpha.size(); ++i) alpha[i] = std::to_integer<uint8_t>(texels[4 * i + 3]);
   return alpha;
 }
 
@@ -24,21 +24,20 @@ std::array<uint8_t, 8> bc3_palette(uint8_t first, uint8_t second) {
   std::array<uint8_t, 8> palette{first, second, 0, 0, 0, 0, 0, 255};
   const int steps = first > second ? 7 : 5;
   for (int i = 1; i < steps; ++i)
-    palette[static_cast<std::size_t>(i + 1)] =
-        static_cast<uint8_t>((first * (steps - i) + second * i + steps / 2) / steps);
+    palette[static_cast<size_t>(i + 1)] = static_cast<uint8_t>((first * (steps - i) + second * i + steps / 2) / steps);
   return palette;
 }
 
 // Blocks of 4×4 texels in 16 bytes: two values, sixteen numbers of three bits, then the colours.
 std::vector<uint8_t> alpha_of_bc3(const pack::Image& image, std::span<const std::byte> blocks) {
-  std::vector<uint8_t> alpha(std::size_t{image.width} * image.height);
-  const std::size_t blocks_across = (image.width + 3) / 4;
-  for (std::size_t y = 0; y < image.height; ++y) {
-    for (std::size_t x = 0; x < image.width; ++x) {
+  std::vector<uint8_t> alpha(size_t{image.width} * image.height);
+  const size_t blocks_across = (image.width + 3) / 4;
+  for (size_t y = 0; y < image.height; ++y) {
+    for (size_t x = 0; x < image.width; ++x) {
       const std::byte* const block = &blocks[16 * (y / 4 * blocks_across + x / 4)];
-      const auto byte = [block](std::size_t i) { return std::to_integer<uint8_t>(block[i]); };
+      const auto byte = [block](size_t i) { return std::to_integer<uint8_t>(block[i]); };
       uint64_t numbers = 0;
-      for (std::size_t i = 0; i < 6; ++i) numbers |= uint64_t{byte(2 + i)} << 8 * i;
+      for (size_t i = 0; i < 6; ++i) numbers |= uint64_t{byte(2 + i)} << 8 * i;
       alpha[y * image.width + x] = bc3_palette(byte(0), byte(1))[numbers >> 3 * (y % 4 * 4 + x % 4) & 7];
     }
   }
@@ -47,8 +46,8 @@ std::vector<uint8_t> alpha_of_bc3(const pack::Image& image, std::span<const std:
 
 // Half floats, as bits.
 std::vector<uint16_t> alpha_of_halves(const pack::Image& image, std::span<const std::byte> texels) {
-  std::vector<uint16_t> alpha(std::size_t{image.width} * image.height);
-  for (std::size_t i = 0; i < alpha.size(); ++i) std::memcpy(&alpha[i], &texels[8 * i + 6], sizeof(uint16_t));
+  std::vector<uint16_t> alpha(size_t{image.width} * image.height);
+  for (size_t i = 0; i < alpha.size(); ++i) std::memcpy(&alpha[i], &texels[8 * i + 6], sizeof(uint16_t));
   return alpha;
 }
 
@@ -96,7 +95,7 @@ AlphaTexture::AlphaTexture(const pack::View& pack, const pack::Texture& texture)
 }
 
 float AlphaTexture::texel(int64_t x, int64_t y) const {
-  const auto i = static_cast<std::size_t>(wrapped(y, height_, wrap_v_) * width_ + wrapped(x, width_, wrap_u_));
+  const auto i = static_cast<size_t>(wrapped(y, height_, wrap_v_) * width_ + wrapped(x, width_, wrap_u_));
   return alpha_.empty() ? glm::unpackHalf1x16(half_alpha_[i]) : static_cast<float>(alpha_[i]) / 255.0f;
 }
 

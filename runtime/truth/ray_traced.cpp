@@ -22,8 +22,8 @@
 namespace chandelier::truth {
 namespace {
 
-constexpr std::size_t points_at_once = 4096;  // of a thread
-constexpr std::size_t rays_at_once = 8;
+constexpr size_t points_at_once = 4096;  // of a thread
+constexpr size_t rays_at_once = 8;
 constexpr uint32_t rays_to_disc = 32;  // from a point to a light with a radius
 
 // A triangle's corner for alpha tests. Each member is interpolated linearly over the triangle.
@@ -40,7 +40,7 @@ struct Casters {
   float cutoff = 0.0f;
 
   // Where a ray met the triangle: barycentric coordinates of its second and third corner.
-  bool has_surface_at(std::size_t triangle, float u, float v) const {
+  bool has_surface_at(size_t triangle, float u, float v) const {
     const AlphaCorner* const corner = &alpha_corners[3 * triangle];
     const float w = 1.0f - u - v;
     const float alpha = w * corner[0].alpha + u * corner[1].alpha + v * corner[2].alpha;
@@ -132,7 +132,7 @@ class RayScene {
  private:
   void add(Casters& casters);
   void check(const std::string& what) const;
-  void answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const;
+  void answer_part(const VisibilityQuery& query, size_t first, size_t end) const;
 
   Version instances_;                    // of the world, when this was built
   glm::vec3 origin_ws_;                  // origin of all coordinates here
@@ -162,7 +162,7 @@ void RayScene::check(const std::string& what) const {
 }
 
 void RayScene::add(Casters& casters) {
-  const std::size_t corners = casters.corners.size();
+  const size_t corners = casters.corners.size();
   casters.corners.emplace_back();  // Embree reads four floats at a corner
   const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, casters.corners.data(), 0,
@@ -235,7 +235,7 @@ glm::vec2 disc_point(uint32_t i, uint32_t count, float turn) {
 // A point sees a sphere as a disc perpendicular to the ray to its centre. Each point uses other places of the disc.
 class Disc {
  public:
-  Disc(const Sight& to_middle, float radius_m, std::size_t point) : to_middle_(to_middle) {
+  Disc(const Sight& to_middle, float radius_m, size_t point) : to_middle_(to_middle) {
     const glm::vec3 way = glm::normalize(to_middle.way);
     across_ =
         radius_m * glm::normalize(glm::cross(way, std::abs(way.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
@@ -260,12 +260,12 @@ class Disc {
 struct Bundle {
   alignas(32) std::array<int, rays_at_once> valid{};
   RTCRay8 rays{};
-  std::array<std::size_t, rays_at_once> point{};
-  std::size_t count = 0;
+  std::array<size_t, rays_at_once> point{};
+  size_t count = 0;
 
-  void add(const Sight& way, std::size_t number, RTCScene scene, std::span<uint8_t> lit) {
+  void add(const Sight& way, size_t number, RTCScene scene, std::span<uint8_t> lit) {
     if (count == rays_at_once) look(scene, lit);
-    const std::size_t i = count++;
+    const size_t i = count++;
     valid[i] = -1;
     point[i] = number;
     rays.org_x[i] = way.from.x, rays.org_y[i] = way.from.y, rays.org_z[i] = way.from.z;
@@ -280,19 +280,19 @@ struct Bundle {
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcOccluded8(valid.data(), scene, &context, &rays);
-    for (std::size_t i = 0; i < count; ++i)
+    for (size_t i = 0; i < count; ++i)
       if (rays.tfar[i] >= 0.0f) ++lit[point[i]];
     valid.fill(0);
     count = 0;
   }
 };
 
-void RayScene::answer_part(const VisibilityQuery& query, std::size_t first, std::size_t end) const {
+void RayScene::answer_part(const VisibilityQuery& query, size_t first, size_t end) const {
   const uint32_t rays = query.radius_m > 0.0f ? rays_to_disc : 1;
   const glm::vec3 eye = query.eye_ws - origin_ws_, light = query.light.position_ws - origin_ws_;
   const auto lit = query.visibility;  // holds the number of clear rays per point first
   Bundle bundle;
-  for (std::size_t i = first; i < end; ++i) {
+  for (size_t i = first; i < end; ++i) {
     lit[i] = 0;
     const auto to_middle = sight(query.light, light, query.near_m, seen_from(eye, query.points[i]));
     if (!to_middle) continue;
@@ -304,12 +304,12 @@ void RayScene::answer_part(const VisibilityQuery& query, std::size_t first, std:
     for (uint32_t ray = 0; ray < rays; ++ray) bundle.add(disc.sight(ray), i, scene_.get(), lit);
   }
   bundle.look(scene_.get(), lit);
-  for (std::size_t i = first; i < end; ++i) lit[i] = static_cast<uint8_t>((lit[i] * 255 + rays / 2) / rays);
+  for (size_t i = first; i < end; ++i) lit[i] = static_cast<uint8_t>((lit[i] * 255 + rays / 2) / rays);
 }
 
 void RayScene::answer(const VisibilityQuery& query) const {
-  const std::size_t parts = (query.points.size() + points_at_once - 1) / points_at_once;
-  pack::parallel_for(parts, 0, [&](std::size_t part) {
+  const size_t parts = (query.points.size() + points_at_once - 1) / points_at_once;
+  pack::parallel_for(parts, 0, [&](size_t part) {
     answer_part(query, part * points_at_once, std::min(query.points.size(), (part + 1) * points_at_once));
   });
 }

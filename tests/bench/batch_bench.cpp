@@ -23,26 +23,26 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr std::size_t most_triangles = 100, meshlet_vertices = 255;
+constexpr size_t most_triangles = 100, meshlet_vertices = 255;
 
 /// Corners of all triangles, batch after batch.
 struct Batches {
-  std::vector<std::uint32_t> indices;
-  std::vector<std::uint32_t> counts;
+  std::vector<uint32_t> indices;
+  std::vector<uint32_t> counts;
 };
 
 std::vector<BvhItem> boxes_of(const PackedPrimitive& primitive, int closed) {
   std::vector<BvhItem> boxes;
-  for (std::size_t t = 0; t < primitive.triangle_count(); ++t) {
+  for (size_t t = 0; t < primitive.triangle_count(); ++t) {
     if (closed >= 0 && primitive.closed[t] != (closed == 1)) continue;
     boxes.push_back(triangle_box(corner_of(primitive, t, 0), corner_of(primitive, t, 1), corner_of(primitive, t, 2),
-                                 static_cast<std::uint32_t>(t)));
+                                 static_cast<uint32_t>(t)));
   }
   return boxes;
 }
 
 void append(const PackedPrimitive& primitive, const BatchOrder& order, Batches& out) {
-  for (const std::uint32_t t : order.triangles) {
+  for (const uint32_t t : order.triangles) {
     out.indices.insert(out.indices.end(), &primitive.indices[3 * t], &primitive.indices[3 * t] + 3);
   }
   out.counts.insert(out.counts.end(), order.counts.begin(), order.counts.end());
@@ -63,22 +63,22 @@ Batches by_sah_closed_apart(const PackedPrimitive& primitive) {
 
 Batches by_index(const PackedPrimitive& primitive) {
   Batches out{primitive.indices, {}};
-  for (std::size_t left = primitive.triangle_count(); left > 0; left -= out.counts.back()) {
-    out.counts.push_back(static_cast<std::uint32_t>(std::min(left, most_triangles)));
+  for (size_t left = primitive.triangle_count(); left > 0; left -= out.counts.back()) {
+    out.counts.push_back(static_cast<uint32_t>(std::min(left, most_triangles)));
   }
   return out;
 }
 
 template <typename Build>
 Batches by_meshlets(const PackedPrimitive& primitive, Build build) {
-  const std::size_t bound = meshopt_buildMeshletsBound(primitive.indices.size(), meshlet_vertices, most_triangles);
+  const size_t bound = meshopt_buildMeshletsBound(primitive.indices.size(), meshlet_vertices, most_triangles);
   std::vector<meshopt_Meshlet> meshlets(bound);
-  std::vector<std::uint32_t> vertices(bound * meshlet_vertices);
-  std::vector<std::uint8_t> corners(bound * most_triangles * 3);
+  std::vector<uint32_t> vertices(bound * meshlet_vertices);
+  std::vector<uint8_t> corners(bound * most_triangles * 3);
   meshlets.resize(build(meshlets.data(), vertices.data(), corners.data()));
   Batches out;
   for (const meshopt_Meshlet& meshlet : meshlets) {
-    for (std::size_t i = 0; i < std::size_t{meshlet.triangle_count} * 3; ++i) {
+    for (size_t i = 0; i < size_t{meshlet.triangle_count} * 3; ++i) {
       out.indices.push_back(vertices[meshlet.vertex_offset + corners[meshlet.triangle_offset + i]]);
     }
     out.counts.push_back(meshlet.triangle_count);
@@ -87,7 +87,7 @@ Batches by_meshlets(const PackedPrimitive& primitive, Build build) {
 }
 
 Batches by_buildMeshlets(const PackedPrimitive& primitive) {
-  std::vector<std::uint32_t> order(primitive.indices.size());
+  std::vector<uint32_t> order(primitive.indices.size());
   meshopt_optimizeVertexCache(order.data(), primitive.indices.data(), order.size(), primitive.vertices.size());
   return by_meshlets(primitive, [&](auto* meshlets, auto* vertices, auto* corners) {
     return meshopt_buildMeshlets(meshlets, vertices, corners, order.data(), order.size(),
@@ -97,7 +97,7 @@ Batches by_buildMeshlets(const PackedPrimitive& primitive) {
 }
 
 Batches by_spatialSort(const PackedPrimitive& primitive) {
-  std::vector<std::uint32_t> order(primitive.indices.size());
+  std::vector<uint32_t> order(primitive.indices.size());
   meshopt_spatialSortTriangles(order.data(), primitive.indices.data(), order.size(),
                                &primitive.vertices[0].position_ls.x, primitive.vertices.size(), sizeof(PackedVertex));
   return by_meshlets(primitive, [&](auto* meshlets, auto* vertices, auto* corners) {
@@ -118,11 +118,11 @@ struct WorldBatch {
 
 void place(const PackedPrimitive& primitive, const Batches& batches, const glm::dmat4& world_from_local,
            std::vector<WorldBatch>& out) {
-  std::size_t next = 0;
-  for (const std::uint32_t count : batches.counts) {
+  size_t next = 0;
+  for (const uint32_t count : batches.counts) {
     WorldBatch batch;
     batch.triangles = count;
-    for (std::size_t i = 0; i < 3 * std::size_t{count}; ++i, ++next) {
+    for (size_t i = 0; i < 3 * size_t{count}; ++i, ++next) {
       const glm::vec3 p(world_from_local * glm::dvec4(primitive.vertices[batches.indices[next]].position_ls, 1));
       batch.low = glm::min(batch.low, p);
       batch.high = glm::max(batch.high, p);
@@ -165,7 +165,7 @@ void compare(const Scene& scene, const std::vector<PackedMesh>& meshes, const Wa
   double seconds = INFINITY;
   for (int round = 0; round < 3; ++round) {
     const auto start = std::chrono::steady_clock::now();
-    tbb::parallel_for(std::size_t{0}, cuts.size(), [&](std::size_t i) { cuts[i] = way.cut(*primitives[i]); });
+    tbb::parallel_for(size_t{0}, cuts.size(), [&](size_t i) { cuts[i] = way.cut(*primitives[i]); });
     seconds = std::min(seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   std::vector<WorldBatch> batches;
@@ -173,7 +173,7 @@ void compare(const Scene& scene, const std::vector<PackedMesh>& meshes, const Wa
     for (const PackedPrimitive& primitive : meshes[instance.mesh].primitives) {
       if (primitive.triangle_count() == 0) continue;
       const auto number = std::find(primitives.begin(), primitives.end(), &primitive) - primitives.begin();
-      place(primitive, cuts[static_cast<std::size_t>(number)], instance.world_from_local, batches);
+      place(primitive, cuts[static_cast<size_t>(number)], instance.world_from_local, batches);
     }
   }
   WorldBatch all;

@@ -17,17 +17,17 @@ namespace {
 using namespace chandelier;
 using namespace chandelier::baker;
 
-Scene terrain(std::uint32_t side) {
+Scene terrain(uint32_t side) {
   Primitive primitive;
-  for (std::uint32_t y = 0; y <= side; ++y) {
-    for (std::uint32_t x = 0; x <= side; ++x) {
+  for (uint32_t y = 0; y <= side; ++y) {
+    for (uint32_t x = 0; x <= side; ++x) {
       const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
       primitive.vertices.push_back({.position_ls = {fx, 20 * std::sin(fx * 0.02f) * std::cos(fy * 0.03f), fy}});
     }
   }
-  for (std::uint32_t y = 0; y < side; ++y) {
-    for (std::uint32_t x = 0; x < side; ++x) {
-      const std::uint32_t a = y * (side + 1) + x, c = a + side + 1;
+  for (uint32_t y = 0; y < side; ++y) {
+    for (uint32_t x = 0; x < side; ++x) {
+      const uint32_t a = y * (side + 1) + x, c = a + side + 1;
       primitive.indices.insert(primitive.indices.end(), {a, c + 1, a + 1, a, c, c + 1});
     }
   }
@@ -58,7 +58,7 @@ pack::Contents baked(Scene scene) {
   return bake(std::move(scene), {}, Progress(false), report, warnings);
 }
 
-void tell(benchmark::State& state, std::uint64_t triangles, double nodes, double sah_cost) {
+void tell(benchmark::State& state, uint64_t triangles, double nodes, double sah_cost) {
   const auto count = static_cast<double>(triangles);
   state.counters["triangles"] = count;
   state.counters["triangles/s"] = benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
@@ -94,7 +94,7 @@ void add(const std::string& name, Scene scene) {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  add("terrain", terrain(argc > 1 ? static_cast<std::uint32_t>(std::stoul(argv[1])) : 700));
+  add("terrain", terrain(argc > 1 ? static_cast<uint32_t>(std::stoul(argv[1])) : 700));
   for (const char* name : {"crytek_sponza/crytek_sponza.gltf", "stk_candela_city/candela_city.gltf",
                            "classroom/classroom.gltf", "nexuiz_stormkeep/stormkeep.gltf"}) {
     const std::filesystem::path path = std::filesystem::path(CHANDELIER_DATA_DIR) / "scenes" / name;

@@ -32,7 +32,7 @@ struct Folder {
 };
 
 /// What the entry says that it is, and as much around it as it asks for; false where it is no pack.
-bool look(const std::vector<std::uint8_t>& bytes, std::string& name, pack::Contents& around) {
+bool look(const std::vector<uint8_t>& bytes, std::string& name, pack::Contents& around) {
   try {
     const fuzz::MemoryFile file(bytes);
     const pack::File entry(file.path());
@@ -51,9 +51,9 @@ bool look(const std::vector<std::uint8_t>& bytes, std::string& name, pack::Conte
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const Folder folder;
-  std::vector<std::uint8_t> bytes(data, data + size);
+  std::vector<uint8_t> bytes(data, data + size);
   fuzz::mend_checksums(bytes);
   std::string name;
   pack::Contents pack;
@@ -76,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   baker::MadeImages made;
-  for (const std::size_t requests : {1, 2}) baker::load_images(cache, name, 1, requests, made);
+  for (const size_t requests : {1, 2}) baker::load_images(cache, name, 1, requests, made);
   std::filesystem::remove(path);
   return 0;
 }

@@ -16,12 +16,12 @@ namespace chandelier::fuzz {
 
 class MemoryFile {
  public:
-  explicit MemoryFile(std::span<const std::uint8_t> bytes) : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
+  explicit MemoryFile(std::span<const uint8_t> bytes) : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
     if (descriptor_ < 0) throw std::runtime_error("no file in memory");
-    for (std::size_t done = 0; done < bytes.size();) {
+    for (size_t done = 0; done < bytes.size();) {
       const ssize_t written = write(descriptor_, bytes.data() + done, bytes.size() - done);
       if (written <= 0) throw std::runtime_error("cannot write a file in memory");
-      done += static_cast<std::size_t>(written);
+      done += static_cast<size_t>(written);
     }
   }
   ~MemoryFile() { close(descriptor_); }

@@ -4,7 +4,7 @@
 #include "fuzz_file.h"
 #include "import/import.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace chandelier;
   const fuzz::MemoryFile file({data, size});
   try {

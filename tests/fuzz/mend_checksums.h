@@ -13,7 +13,7 @@
 
 namespace chandelier::fuzz {
 
-inline void mend_checksums(std::vector<std::uint8_t>& bytes) {
+inline void mend_checksums(std::vector<uint8_t>& bytes) {
   pack::FileHeader header;
   if (bytes.size() < sizeof(header)) return;
   std::memcpy(&header, bytes.data(), sizeof(header));
@@ -21,10 +21,10 @@ inline void mend_checksums(std::vector<std::uint8_t>& bytes) {
   header.version = pack::schema_version;
   header.schema_hash = pack::schema_hash;
   header.file_bytes = bytes.size();
-  const std::uint64_t table_bytes = std::uint64_t{header.section_count} * sizeof(pack::SectionEntry);
+  const uint64_t table_bytes = uint64_t{header.section_count} * sizeof(pack::SectionEntry);
   if (table_bytes <= bytes.size() - sizeof(header)) {
-    for (std::uint32_t i = 0; i < header.section_count; ++i) {
-      std::uint8_t* place = bytes.data() + sizeof(header) + i * sizeof(pack::SectionEntry);
+    for (uint32_t i = 0; i < header.section_count; ++i) {
+      uint8_t* place = bytes.data() + sizeof(header) + i * sizeof(pack::SectionEntry);
       pack::SectionEntry entry;
       std::memcpy(&entry, place, sizeof(entry));
       if (entry.offset_bytes > bytes.size() || entry.size_bytes > bytes.size() - entry.offset_bytes) continue;

@@ -13,14 +13,14 @@ namespace {
 using namespace chandelier;
 
 /// Reads every byte of every section and image: where one is not there, the sanitizer says so.
-std::uint64_t sum_of(const pack::File& file) {
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
-    for (const std::byte byte : pack::section_bytes(file.view(), i)) sum += static_cast<std::uint64_t>(byte);
+uint64_t sum_of(const pack::File& file) {
+  uint64_t sum = 0;
+  for (size_t i = 0; i < pack::section_infos.size(); ++i) {
+    for (const std::byte byte : pack::section_bytes(file.view(), i)) sum += static_cast<uint64_t>(byte);
   }
-  for (std::uint32_t i = 0; i < file.view().images.size(); ++i) {
+  for (uint32_t i = 0; i < file.view().images.size(); ++i) {
     try {
-      for (const std::byte byte : pack::texels_of(file.view(), i).bytes()) sum += static_cast<std::uint64_t>(byte);
+      for (const std::byte byte : pack::texels_of(file.view(), i).bytes()) sum += static_cast<uint64_t>(byte);
     } catch (const pack::Error&) {
     }
   }
@@ -30,12 +30,12 @@ std::uint64_t sum_of(const pack::File& file) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  std::vector<std::uint8_t> bytes(data, data + size);
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  std::vector<uint8_t> bytes(data, data + size);
   fuzz::mend_checksums(bytes);
   const fuzz::MemoryFile file(bytes);
   try {
-    const volatile std::uint64_t sum = sum_of(pack::File(file.path()));
+    const volatile uint64_t sum = sum_of(pack::File(file.path()));
     (void)sum;
   } catch (const pack::Error&) {
   }

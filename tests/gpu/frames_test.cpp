@@ -20,7 +20,7 @@ thread_local uint64_t host_allocations = 0;  // of this thread: the driver has t
 
 // Every allocation of this program is counted. (Replaced as the standard allows: [new.delete.single].)
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // inlined, new is malloc()
-void* operator new(std::size_t bytes) {
+void* operator new(size_t bytes) {
   ++host_allocations;
   if (void* memory = std::malloc(bytes)) return memory;
   throw std::bad_alloc();
@@ -28,7 +28,7 @@ void* operator new(std::size_t bytes) {
 void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+void operator delete(void* memory, size_t) noexcept {
   std::free(memory);
 }
 

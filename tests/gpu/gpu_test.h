@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+
 #include "frame/renderer.h"
 #include "scene_builder.h"
 

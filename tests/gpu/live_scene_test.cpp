@@ -45,7 +45,7 @@ class LiveSceneTest : public test::GpuTest {
     }
     EXPECT_TRUE(is_so());
   }
-  static std::size_t lights(const LiveScene& live) { return live.scene().pack.view().lights.size(); }
+  static size_t lights(const LiveScene& live) { return live.scene().pack.view().lights.size(); }
 
   pack::test::Folder folder_;
   std::filesystem::path path_ = folder_ / "hall.chandelier";

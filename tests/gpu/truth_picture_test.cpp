@@ -91,7 +91,7 @@ class TruthPictureTest : public GpuTest {
     const auto near = around(point, asked_.light, texel_of(light, point.position), 2.0f);
     std::vector<uint8_t> visibility(near.size());
     asked_.rays({asked_.light, asked_.near_m, 0.0f, glm::vec3(0.0f), near, visibility});
-    const auto lit = static_cast<std::size_t>(std::count(visibility.begin(), visibility.end(), 255));
+    const auto lit = static_cast<size_t>(std::count(visibility.begin(), visibility.end(), 255));
     return near.empty() || (lit != 0 && lit != near.size());
   }
 

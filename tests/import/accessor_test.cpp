@@ -7,7 +7,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-const glm::vec3& position(const Scene& scene, std::size_t vertex) {
+const glm::vec3& position(const Scene& scene, size_t vertex) {
   return scene.meshes.at(0).primitives.at(0).vertices.at(vertex).position_ls;
 }
 
@@ -25,34 +25,33 @@ Scene with_integer_positions(int component_type, bool normalized, const std::vec
 }
 
 TEST(Accessor, ReadsPlainIntegersOfEachType) {
-  const Scene bytes = with_integer_positions<std::int8_t>(byte_type, false, {-128, 0, 127, 1, 0, 0, 0, 1, 0});
+  const Scene bytes = with_integer_positions<int8_t>(byte_type, false, {-128, 0, 127, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(bytes, 0), glm::vec3(-128, 0, 127));
   const Scene unsigned_bytes =
-      with_integer_positions<std::uint8_t>(unsigned_byte_type, false, {255, 0, 7, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<uint8_t>(unsigned_byte_type, false, {255, 0, 7, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_bytes, 0), glm::vec3(255, 0, 7));
-  const Scene shorts = with_integer_positions<std::int16_t>(short_type, false, {-32768, 0, 32767, 1, 0, 0, 0, 1, 0});
+  const Scene shorts = with_integer_positions<int16_t>(short_type, false, {-32768, 0, 32767, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(shorts, 0), glm::vec3(-32768, 0, 32767));
   const Scene unsigned_shorts =
-      with_integer_positions<std::uint16_t>(unsigned_short_type, false, {65535, 0, 7, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<uint16_t>(unsigned_short_type, false, {65535, 0, 7, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_shorts, 0), glm::vec3(65535, 0, 7));
   const Scene unsigned_ints =
-      with_integer_positions<std::uint32_t>(unsigned_int_type, false, {1u << 31, 0, 7, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<uint32_t>(unsigned_int_type, false, {1u << 31, 0, 7, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_ints, 0), glm::vec3(2147483648.0f, 0, 7));
 }
 
 TEST(Accessor, NormalizesAsGltfSays) {
   // The most negative value and its neighbour are both -1.
-  const Scene bytes = with_integer_positions<std::int8_t>(byte_type, true, {-128, -127, 127, 1, 0, 0, 0, 1, 0});
+  const Scene bytes = with_integer_positions<int8_t>(byte_type, true, {-128, -127, 127, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(bytes, 0), glm::vec3(-1, -1, 1));
   EXPECT_FLOAT_EQ(position(bytes, 1).x, 1.0f / 127);
   const Scene unsigned_bytes =
-      with_integer_positions<std::uint8_t>(unsigned_byte_type, true, {255, 0, 51, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<uint8_t>(unsigned_byte_type, true, {255, 0, 51, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_bytes, 0), glm::vec3(1, 0, 0.2f));
-  const Scene shorts =
-      with_integer_positions<std::int16_t>(short_type, true, {-32768, -32767, 32767, 1, 0, 0, 0, 1, 0});
+  const Scene shorts = with_integer_positions<int16_t>(short_type, true, {-32768, -32767, 32767, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(shorts, 0), glm::vec3(-1, -1, 1));
   const Scene unsigned_shorts =
-      with_integer_positions<std::uint16_t>(unsigned_short_type, true, {65535, 0, 13107, 1, 0, 0, 0, 1, 0});
+      with_integer_positions<uint16_t>(unsigned_short_type, true, {65535, 0, 13107, 1, 0, 0, 0, 1, 0});
   EXPECT_EQ(position(unsigned_shorts, 0), glm::vec3(1, 0, 0.2f));
 }
 
@@ -85,9 +84,9 @@ void expect_sparse_index_type(int component_type) {
 }
 
 TEST(Accessor, ReplacesSparseElements) {
-  expect_sparse_index_type<std::uint8_t>(unsigned_byte_type);
-  expect_sparse_index_type<std::uint16_t>(unsigned_short_type);
-  expect_sparse_index_type<std::uint32_t>(unsigned_int_type);
+  expect_sparse_index_type<uint8_t>(unsigned_byte_type);
+  expect_sparse_index_type<uint16_t>(unsigned_short_type);
+  expect_sparse_index_type<uint32_t>(unsigned_int_type);
 }
 
 TEST(Accessor, IsZeroWhereSparseDataHasNoBase) {
@@ -99,7 +98,7 @@ TEST(Accessor, IsZeroWhereSparseDataHasNoBase) {
        {"count", 3},
        {"sparse",
         {{"count", 2},
-         {"indices", {{"bufferView", gltf.add_view<std::uint8_t>({1, 2})}, {"componentType", unsigned_byte_type}}},
+         {"indices", {{"bufferView", gltf.add_view<uint8_t>({1, 2})}, {"componentType", unsigned_byte_type}}},
          {"values", {{"bufferView", gltf.add_view<float>({1, 0, 0, 0, 1, 0})}}}}}});
   const Scene scene = with_positions(gltf, accessor);
   EXPECT_EQ(position(scene, 0), glm::vec3(0, 0, 0));
@@ -115,8 +114,8 @@ TEST(Accessor, ReadsIndicesThatAreAllSparse) {
       {"count", 3},
       {"sparse",
        {{"count", 2},
-        {"indices", {{"bufferView", gltf.add_view<std::uint8_t>({1, 2})}, {"componentType", unsigned_byte_type}}},
-        {"values", {{"bufferView", gltf.add_view<std::uint16_t>({1, 2})}}}}}};
+        {"indices", {{"bufferView", gltf.add_view<uint8_t>({1, 2})}, {"componentType", unsigned_byte_type}}},
+        {"values", {{"bufferView", gltf.add_view<uint16_t>({1, 2})}}}}}};
   EXPECT_EQ(gltf.bake().bake_info.unique_triangles, 1u);
 }
 
@@ -129,13 +128,13 @@ void expect_index_type(int component_type) {
                  {"indices", gltf.add_accessor<T>({2, 0, 1}, component_type, "SCALAR", 3)}});
   gltf.add_node({{"mesh", 0}});
   const Scene scene = gltf.import();
-  EXPECT_EQ(scene.meshes.at(0).primitives.at(0).indices, (std::vector<std::uint32_t>{2, 0, 1}));
+  EXPECT_EQ(scene.meshes.at(0).primitives.at(0).indices, (std::vector<uint32_t>{2, 0, 1}));
 }
 
 TEST(Accessor, ReadsIndicesOfEachWidth) {
-  expect_index_type<std::uint8_t>(unsigned_byte_type);
-  expect_index_type<std::uint16_t>(unsigned_short_type);
-  expect_index_type<std::uint32_t>(unsigned_int_type);
+  expect_index_type<uint8_t>(unsigned_byte_type);
+  expect_index_type<uint16_t>(unsigned_short_type);
+  expect_index_type<uint32_t>(unsigned_int_type);
 }
 
 }  // namespace

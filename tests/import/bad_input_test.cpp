@@ -146,7 +146,7 @@ const Case cases[] = {
     {"geometry that would fill the memory",
      [](GltfBuilder& g) {
        // Strips of 100 000 vertices: with flat normals 3 corners of 64 bytes and the vertex's own 60 for each.
-       const int position = g.append("accessors", {{"bufferView", g.add_view(std::vector<std::int8_t>(400000), 4)},
+       const int position = g.append("accessors", {{"bufferView", g.add_view(std::vector<int8_t>(400000), 4)},
                                                    {"componentType", byte_type},
                                                    {"type", "VEC3"},
                                                    {"count", 100000}});
@@ -224,7 +224,7 @@ const Case cases[] = {
      [](GltfBuilder& g) {
        g.json["accessors"][0]["sparse"] = {
            {"count", 1},
-           {"indices", {{"bufferView", g.add_view<std::uint8_t>({9})}, {"componentType", unsigned_byte_type}}},
+           {"indices", {{"bufferView", g.add_view<uint8_t>({9})}, {"componentType", unsigned_byte_type}}},
            {"values", {{"bufferView", g.add_view<float>({0, 0, 0})}}}};
      },
      "mesh 0, primitive 0, attribute POSITION, sparse indices: index is out of range (9)"},
@@ -232,7 +232,7 @@ const Case cases[] = {
      [](GltfBuilder& g) {
        g.json["accessors"][0]["sparse"] = {
            {"count", 2},
-           {"indices", {{"bufferView", g.add_view<std::uint8_t>({0, 1})}, {"componentType", unsigned_byte_type}}},
+           {"indices", {{"bufferView", g.add_view<uint8_t>({0, 1})}, {"componentType", unsigned_byte_type}}},
            {"values", {{"bufferView", g.add_view<float>({0, 0, 0})}}}};
      },
      "mesh 0, primitive 0, attribute POSITION, sparse values: accessor ends past buffer view 3 (2 elements of 12 "
@@ -344,7 +344,7 @@ TEST(BadInput, IsOneLineWhateverTypeAValueHas) {
   whole["buffers"][0]["extensions"]["EXT_meshopt_compression"]["fallback"] = false;
   whole["bufferViews"][0]["target"] = 34962;
   const std::filesystem::path path = scratch_folder() / "typed.gltf";
-  std::size_t refused = 0;
+  size_t refused = 0;
   replace_each(whole, [&] {
     write_bytes(path, whole.dump());
     const std::string line = error_of(path);  // another exception fails the test

@@ -20,9 +20,9 @@ float between(std::mt19937& random, double low, double high) {
   return static_cast<float>(low + (high - low) * (static_cast<double>(random()) / 4294967296.0));
 }
 
-std::vector<BvhItem> random_boxes(std::mt19937& random, std::uint32_t count) {
+std::vector<BvhItem> random_boxes(std::mt19937& random, uint32_t count) {
   std::vector<BvhItem> boxes;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (uint32_t i = 0; i < count; ++i) {
     glm::vec3 corners[3];
     const glm::vec3 at(between(random, -9, 9), between(random, 0, 2), between(random, 0, 40));
     for (glm::vec3& corner : corners) corner = at + glm::vec3(between(random, 0, 0.2), between(random, 0, 0.2), 0);
@@ -31,19 +31,19 @@ std::vector<BvhItem> random_boxes(std::mt19937& random, std::uint32_t count) {
   return boxes;
 }
 
-void expect_all_once(const BatchOrder& order, std::size_t count, std::size_t most) {
-  std::vector<std::uint32_t> sorted = order.triangles;
+void expect_all_once(const BatchOrder& order, size_t count, size_t most) {
+  std::vector<uint32_t> sorted = order.triangles;
   std::sort(sorted.begin(), sorted.end());
   ASSERT_EQ(sorted.size(), count);
-  for (std::uint32_t i = 0; i < count; ++i) ASSERT_EQ(sorted[i], i);
-  EXPECT_EQ(std::accumulate(order.counts.begin(), order.counts.end(), std::size_t{0}), count);
-  for (const std::uint32_t each : order.counts) EXPECT_TRUE(each >= 1 && each <= most) << each;
+  for (uint32_t i = 0; i < count; ++i) ASSERT_EQ(sorted[i], i);
+  EXPECT_EQ(std::accumulate(order.counts.begin(), order.counts.end(), size_t{0}), count);
+  for (const uint32_t each : order.counts) EXPECT_TRUE(each >= 1 && each <= most) << each;
 }
 
 TEST(BatchSplit, TakesEachTriangleOnceIntoNearlyFullBatches) {
   std::mt19937 random(1);
-  for (const std::uint32_t count : {1u, 3u, 4u, 5u, 100u, 101u, 199u, 1000u, 70000u}) {
-    for (const std::size_t most : {4u, 100u, 512u}) {
+  for (const uint32_t count : {1u, 3u, 4u, 5u, 100u, 101u, 199u, 1000u, 70000u}) {
+    for (const size_t most : {4u, 100u, 512u}) {
       const BatchOrder order = split_into_batches(random_boxes(random, count), most);
       expect_all_once(order, count, most);
       EXPECT_LE(static_cast<double>(order.counts.size()), std::ceil(1.35 * std::ceil(double(count) / double(most))));
@@ -54,9 +54,9 @@ TEST(BatchSplit, TakesEachTriangleOnceIntoNearlyFullBatches) {
 
 TEST(BatchSplit, EndsWhateverTheBoxes) {
   std::mt19937 random(2);
-  const auto all = [](std::uint32_t count, auto corner) {
+  const auto all = [](uint32_t count, auto corner) {
     std::vector<BvhItem> boxes;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (uint32_t i = 0; i < count; ++i) {
       const glm::vec3 p = corner(i);
       boxes.push_back(triangle_box(p, p, p, i));
     }
@@ -74,7 +74,7 @@ TEST(BatchSplit, EndsWhateverTheBoxes) {
 
 TEST(BatchSplit, IsTheSameOnAnyNumberOfThreads) {
   BatchOrder orders[2];
-  for (const std::size_t threads : {1u, 2u}) {
+  for (const size_t threads : {1u, 2u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     std::mt19937 random(3);
     orders[threads - 1] = split_into_batches(random_boxes(random, 200000), 100);
@@ -84,18 +84,18 @@ TEST(BatchSplit, IsTheSameOnAnyNumberOfThreads) {
 }
 
 /// A bumpy sheet of squares, two triangles each.
-PackedPrimitive sheet(std::uint32_t side) {
+PackedPrimitive sheet(uint32_t side) {
   PackedPrimitive out;
-  for (std::uint32_t y = 0; y <= side; ++y) {
-    for (std::uint32_t x = 0; x <= side; ++x) {
+  for (uint32_t y = 0; y <= side; ++y) {
+    for (uint32_t x = 0; x <= side; ++x) {
       const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
       out.vertices.push_back({.position_ls = {fx, fy, std::sin(fx * 0.5f) * std::cos(fy * 0.3f)}, .attributes = {}});
     }
   }
-  for (std::uint32_t y = 0; y < side; ++y) {
-    for (std::uint32_t x = 0; x < side; ++x) {
-      const std::uint32_t a = y * (side + 1) + x, b = a + 1, c = a + side + 1;
-      for (const std::uint32_t corner : {a, b, c + 1, a, c + 1, c}) out.indices.push_back(corner);
+  for (uint32_t y = 0; y < side; ++y) {
+    for (uint32_t x = 0; x < side; ++x) {
+      const uint32_t a = y * (side + 1) + x, b = a + 1, c = a + side + 1;
+      for (const uint32_t corner : {a, b, c + 1, a, c + 1, c}) out.indices.push_back(corner);
     }
   }
   out.closed.assign(out.triangle_count(), false);
@@ -105,23 +105,23 @@ PackedPrimitive sheet(std::uint32_t side) {
 TEST(BatchCut, PutsClosedTrianglesFirstAndVerticesInTheOrderOfTheirUse) {
   std::mt19937 random(4);
   PackedPrimitive primitive = sheet(40);
-  for (std::size_t t = 0; t < primitive.closed.size(); ++t) primitive.closed[t] = t % 40 < 20;
+  for (size_t t = 0; t < primitive.closed.size(); ++t) primitive.closed[t] = t % 40 < 20;
   primitive.skin_vertices.resize(primitive.vertices.size());
   const PackedPrimitive before = primitive;
   const CutPrimitive cut = cut_into_batches(std::move(primitive), 64);
   ASSERT_EQ(cut.indices.size(), before.indices.size());
   EXPECT_EQ(cut.skin_vertices.size(), cut.vertices.size());
-  std::uint32_t next = 0;  // the lowest number of a vertex that was not used yet
-  std::vector<std::array<std::uint32_t, 3>> triangles[2], expected[2];
-  const auto turned = [](std::array<std::uint32_t, 3> t) {
+  uint32_t next = 0;  // the lowest number of a vertex that was not used yet
+  std::vector<std::array<uint32_t, 3>> triangles[2], expected[2];
+  const auto turned = [](std::array<uint32_t, 3> t) {
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     return t;
   };
-  std::size_t i = 0;
-  for (std::size_t b = 0; b < cut.batch_counts.size(); ++b) {
-    for (std::uint32_t t = 0; t < cut.batch_counts[b]; ++t, i += 3) {
-      std::array<std::uint32_t, 3> corners;
-      for (std::size_t c = 0; c < 3; ++c) {
+  size_t i = 0;
+  for (size_t b = 0; b < cut.batch_counts.size(); ++b) {
+    for (uint32_t t = 0; t < cut.batch_counts[b]; ++t, i += 3) {
+      std::array<uint32_t, 3> corners;
+      for (size_t c = 0; c < 3; ++c) {
         ASSERT_LE(cut.indices[i + c], next);
         next = std::max(next, cut.indices[i + c] + 1);
         corners[c] = cut.vertex_order[cut.indices[i + c]];
@@ -130,8 +130,8 @@ TEST(BatchCut, PutsClosedTrianglesFirstAndVerticesInTheOrderOfTheirUse) {
     }
   }
   EXPECT_EQ(next, cut.vertex_order.size());
-  for (std::size_t t = 0; t < before.triangle_count(); ++t) {
-    const std::uint32_t* corner = &before.indices[3 * t];
+  for (size_t t = 0; t < before.triangle_count(); ++t) {
+    const uint32_t* corner = &before.indices[3 * t];
     expected[before.closed[t]].push_back(turned({corner[0], corner[1], corner[2]}));
   }
   for (const int closed : {0, 1}) {
@@ -149,7 +149,7 @@ bool shows_its_front(const glm::vec3* corner, const glm::dvec3& eye) {
 
 TEST(NormalCone, CullsNoEyeThatSeesAFront) {
   std::mt19937 random(5);
-  std::size_t culled = 0, all_backs = 0, cones = 0;
+  size_t culled = 0, all_backs = 0, cones = 0;
   for (int round = 0; round < 400; ++round) {
     // A cap of a wavy sheet, far from the origin or near it; turned over every other round, as mirrored copies are.
     const glm::vec3 at(between(random, -500, 500), between(random, -5, 5), 0);
@@ -178,7 +178,7 @@ TEST(NormalCone, CullsNoEyeThatSeesAFront) {
       const glm::vec3 eye =
           at + size * 4.0f * glm::vec3(between(random, -1, 1), between(random, -1, 1), between(random, -1, 1));
       bool front = false;
-      for (std::size_t i = 0; i < corners.size(); i += 3) front = front || shows_its_front(&corners[i], eye);
+      for (size_t i = 0; i < corners.size(); i += 3) front = front || shows_its_front(&corners[i], eye);
       const bool culls = cone.cutoff < 1 && glm::dot(glm::normalize(cone.apex - eye), cone.axis) >= cone.cutoff;
       EXPECT_FALSE(culls && front) << "round " << round;
       culled += culls;

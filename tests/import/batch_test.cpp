@@ -17,7 +17,7 @@ namespace {
 /// A bumpy sheet of `side` by `side` squares, two triangles each, with shared vertices.
 GltfBuilder sheet(int side) {
   std::vector<float> positions, normals;
-  std::vector<std::uint32_t> indices;
+  std::vector<uint32_t> indices;
   for (int y = 0; y <= side; ++y) {
     for (int x = 0; x <= side; ++x) {
       const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
@@ -27,8 +27,7 @@ GltfBuilder sheet(int side) {
   }
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
-      const auto a = static_cast<std::uint32_t>(y * (side + 1) + x), b = a + 1,
-                 c = a + static_cast<std::uint32_t>(side) + 1;
+      const auto a = static_cast<uint32_t>(y * (side + 1) + x), b = a + 1, c = a + static_cast<uint32_t>(side) + 1;
       indices.insert(indices.end(), {a, b, c + 1, a, c + 1, c});
     }
   }
@@ -51,9 +50,9 @@ Corners turned(Corners corners) {
 std::vector<Corners> triangles_of(const Scene& scene) {
   std::vector<Corners> out;
   for (const Primitive& primitive : scene.meshes.at(0).primitives) {
-    for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+    for (size_t i = 0; i < primitive.indices.size(); i += 3) {
       Corners corners;
-      for (std::size_t c = 0; c < 3; ++c) {
+      for (size_t c = 0; c < 3; ++c) {
         const glm::vec3& p = primitive.vertices[primitive.indices[i + c]].position_ls;
         corners[c] = {p.x, p.y, p.z};
       }
@@ -67,9 +66,9 @@ std::vector<Corners> triangles_of(const Scene& scene) {
 std::vector<Corners> triangles_of(const pack::Contents& pack) {
   std::vector<Corners> out;
   for (const pack::Batch& batch : pack.batches) {
-    for (std::uint32_t i = 0; i < batch.index_count; i += 3) {
+    for (uint32_t i = 0; i < batch.index_count; i += 3) {
       Corners corners;
-      for (std::uint32_t c = 0; c < 3; ++c) {
+      for (uint32_t c = 0; c < 3; ++c) {
         const glm::vec3& p = pack.positions[pack.indices[batch.first_index + i + c].vertex].position_ls;
         corners[c] = {p.x, p.y, p.z};
       }
@@ -90,7 +89,7 @@ TEST(Batches, HoldEachTriangleOnceWithItsWinding) {
 double area_of(const std::vector<Corners>& triangles) {
   double area = 0;
   for (const Corners& t : triangles) {
-    const auto corner = [&](std::size_t c) { return glm::dvec3(t[c][0], t[c][1], t[c][2]); };
+    const auto corner = [&](size_t c) { return glm::dvec3(t[c][0], t[c][1], t[c][2]); };
     area += glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) / 2;
   }
   return area;
@@ -111,7 +110,7 @@ TEST(Batches, HaveConesThatCullNoFrontNorThoseOfMirroredCopies) {
   gltf.add_node({{"mesh", 0}, {"scale", {-1, 1, 1}}});
   const pack::Contents pack = gltf.bake();
   ASSERT_EQ(pack.meshes.size(), 2u);
-  std::size_t culled = 0;
+  size_t culled = 0;
   for (const pack::Batch& batch : pack.batches) {
     for (int e = 0; e < 200; ++e) {  // eyes on a grid around the sheet
       const glm::vec3 eye(-20 + 13 * (e % 6), -20 + 13 * (e / 6 % 6), -30 + 12 * (e / 36));
@@ -119,9 +118,9 @@ TEST(Batches, HaveConesThatCullNoFrontNorThoseOfMirroredCopies) {
                          glm::dot(glm::normalize(batch.cone_apex_ls - eye), batch.cone_axis_ls) >= batch.cone_cutoff;
       if (!culls) continue;
       ++culled;
-      for (std::uint32_t i = 0; i < batch.index_count; i += 3) {
+      for (uint32_t i = 0; i < batch.index_count; i += 3) {
         glm::dvec3 p[3];
-        for (std::uint32_t c = 0; c < 3; ++c) {
+        for (uint32_t c = 0; c < 3; ++c) {
           p[c] = pack.positions[pack.indices[batch.first_index + i + c].vertex].position_ls;
         }
         EXPECT_LE(glm::dot(glm::cross(p[1] - p[0], p[2] - p[0]), glm::dvec3(eye) - p[0]), 0);
@@ -135,23 +134,22 @@ TEST(Batches, KeepJointsAndWeightsWithTheirVertices) {
   Scene scene = sheet(20).import();
   Primitive& primitive = scene.meshes[0].primitives[0];
   for (const Vertex& vertex : primitive.vertices) {
-    const auto x = static_cast<std::uint16_t>(vertex.position_ls.x),
-               y = static_cast<std::uint16_t>(vertex.position_ls.y);
+    const auto x = static_cast<uint16_t>(vertex.position_ls.x), y = static_cast<uint16_t>(vertex.position_ls.y);
     primitive.skin_vertices.push_back({{x, y, 0, 0}, {40000, 25535, 0, 0}});
   }
   const pack::Contents pack = bake_scene(std::move(scene), {});
   ASSERT_EQ(pack.skin_vertices.size(), pack.positions.size());
   EXPECT_EQ(pack.meshes.at(0).skin_vertex_count, pack.positions.size());
-  for (std::size_t i = 0; i < pack.positions.size(); ++i) {
+  for (size_t i = 0; i < pack.positions.size(); ++i) {
     const glm::vec3& p = pack.positions[i].position_ls;
-    EXPECT_EQ(pack.skin_vertices[i].joints[0], static_cast<std::uint32_t>(p.x) | static_cast<std::uint32_t>(p.y) << 16);
+    EXPECT_EQ(pack.skin_vertices[i].joints[0], static_cast<uint32_t>(p.x) | static_cast<uint32_t>(p.y) << 16);
     EXPECT_EQ(pack.skin_vertices[i].weights[0], 40000u | 25535u << 16);
   }
 }
 
 TEST(Batches, HoldAboutAsManyTrianglesAsAskedAndNeverMore) {
   const GltfBuilder gltf = sheet(40);
-  for (const std::uint32_t most : {4u, 64u, 100u, 256u}) {
+  for (const uint32_t most : {4u, 64u, 100u, 256u}) {
     const pack::Contents pack = gltf.bake({.batch_triangles = most});
     for (const pack::Batch& batch : pack.batches) EXPECT_LE(batch.index_count, 3 * most);
     EXPECT_LE(pack.batches.size(), 2 * (3200 / most)) << most;
@@ -160,12 +158,12 @@ TEST(Batches, HoldAboutAsManyTrianglesAsAskedAndNeverMore) {
 
 TEST(Batches, FollowEachOtherInTheIndicesWithTightBoxes) {
   const pack::Contents pack = sheet(20).bake();
-  std::uint32_t next = 0;
+  uint32_t next = 0;
   for (const pack::Batch& batch : pack.batches) {
     EXPECT_EQ(batch.first_index, next);
     next += batch.index_count;
     glm::vec3 low(1e9f), high(-1e9f);
-    for (std::uint32_t i = batch.first_index; i < next; ++i) {
+    for (uint32_t i = batch.first_index; i < next; ++i) {
       low = glm::min(low, pack.positions[pack.indices[i].vertex].position_ls);
       high = glm::max(high, pack.positions[pack.indices[i].vertex].position_ls);
     }
@@ -221,13 +219,13 @@ TEST(Batches, HaveTheSameBytesOnAnyNumberOfThreads) {
   for (int i = 0; i < 20; ++i) {
     gltf.json["meshes"][0]["primitives"].push_back(gltf.json["meshes"][0]["primitives"][0]);
   }
-  const auto bake_with = [&](std::size_t threads) {
+  const auto bake_with = [&](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return gltf.bake();
   };
   const pack::Contents one = bake_with(1), four = bake_with(4);
   const pack::View a = pack::view_of(one), b = pack::view_of(four);
-  for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
+  for (size_t i = 0; i < pack::section_infos.size(); ++i) {
     const auto left = pack::section_bytes(a, i), right = pack::section_bytes(b, i);
     ASSERT_EQ(left.size(), right.size());
     EXPECT_TRUE(left.empty() || std::memcmp(left.data(), right.data(), left.size()) == 0)
@@ -257,7 +255,7 @@ TEST(BatchInstances, HaveBoxesThatHoldEachVertexExactly) {
   for (const pack::BatchInstance& draw : pack.batch_instances) {
     const pack::Batch& batch = pack.batches[draw.batch];
     const pack::Instance& instance = pack.instances[draw.instance];
-    for (std::uint32_t i = 0; i < batch.index_count; ++i) {
+    for (uint32_t i = 0; i < batch.index_count; ++i) {
       const glm::dvec4 p(pack.positions[pack.indices[batch.first_index + i].vertex].position_ls, 1);
       for (int axis = 0; axis < 3; ++axis) {
         const double world = glm::dot(glm::dvec4(instance.world_from_local[axis]), p);
@@ -293,9 +291,9 @@ TEST(BatchInstances, AreSortedOpaqueFirstThenByMaterial) {
   gltf.add_node({{"mesh", 0}});
   const pack::Contents pack = gltf.bake();
   ASSERT_EQ(pack.batch_instances.size(), 6u);
-  for (std::size_t i = 1; i < pack.batch_instances.size(); ++i) {
+  for (size_t i = 1; i < pack.batch_instances.size(); ++i) {
     const auto key = [&](const pack::BatchInstance& draw) {
-      const std::uint32_t material = pack.batches[draw.batch].material;
+      const uint32_t material = pack.batches[draw.batch].material;
       return std::tuple(pack.materials[material].alpha_mode, material, draw.instance, draw.batch);
     };
     EXPECT_LT(key(pack.batch_instances[i - 1]), key(pack.batch_instances[i]));

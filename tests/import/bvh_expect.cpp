@@ -11,17 +11,17 @@ namespace chandelier::baker::test {
 namespace {
 
 /// Numbers of the items whose boxes are hit, the way a GPU finds them.
-std::vector<std::uint32_t> found(std::span<const pack::BvhNode> nodes, std::uint32_t first, std::uint32_t end,
-                                 const ItemOf& item_of, const Hits& hits) {
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t i = first; i < end;) {
+std::vector<uint32_t> found(std::span<const pack::BvhNode> nodes, uint32_t first, uint32_t end, const ItemOf& item_of,
+                            const Hits& hits) {
+  std::vector<uint32_t> out;
+  for (uint32_t i = first; i < end;) {
     const pack::BvhNode& node = nodes[i];
     if (!hits(node.bounds_min, node.bounds_max)) {
       i = node.skip;
       continue;
     }
     if (node.leaf != pack::none) {
-      for (std::uint32_t k = node.leaf / 16; k < node.leaf / 16 + node.leaf % 16; ++k) {
+      for (uint32_t k = node.leaf / 16; k < node.leaf / 16 + node.leaf % 16; ++k) {
         const BvhItem each = item_of(k);
         if (hits(each.low, each.high)) out.push_back(each.number);
       }
@@ -40,11 +40,11 @@ bool ray_hits(const glm::vec3& origin, const glm::vec3& per_direction, const glm
 
 }  // namespace
 
-void expect_tree(std::span<const pack::BvhNode> nodes, std::span<const pack::NodeArea> areas, std::uint32_t first,
-                 std::uint32_t end, std::uint32_t next_item, const ItemOf& item_of) {
+void expect_tree(std::span<const pack::BvhNode> nodes, std::span<const pack::NodeArea> areas, uint32_t first,
+                 uint32_t end, uint32_t next_item, const ItemOf& item_of) {
   ASSERT_LT(first, end);
   ASSERT_EQ(nodes[first].skip, end);
-  for (std::uint32_t i = first; i < end; ++i) {
+  for (uint32_t i = first; i < end; ++i) {
     const pack::BvhNode& node = nodes[i];
     Box box{glm::vec3(largest_float), glm::vec3(-largest_float)};
     double area_m2 = 0;
@@ -55,7 +55,7 @@ void expect_tree(std::span<const pack::BvhNode> nodes, std::span<const pack::Nod
     };
     if (node.leaf == pack::none) {
       ASSERT_LT(i + 1, node.skip);
-      const std::uint32_t second = nodes[i + 1].skip;
+      const uint32_t second = nodes[i + 1].skip;
       ASSERT_GT(second, i + 1);
       ASSERT_LT(second, node.skip);
       ASSERT_EQ(nodes[second].skip, node.skip);
@@ -98,13 +98,12 @@ std::vector<Hits> random_queries(const Box& space, int count, unsigned seed) {
   return queries;
 }
 
-bool expect_found(std::span<const pack::BvhNode> nodes, std::uint32_t first, std::uint32_t end,
-                  std::uint32_t first_item, std::uint32_t item_count, const ItemOf& item_of,
-                  const std::vector<Hits>& queries) {
+bool expect_found(std::span<const pack::BvhNode> nodes, uint32_t first, uint32_t end, uint32_t first_item,
+                  uint32_t item_count, const ItemOf& item_of, const std::vector<Hits>& queries) {
   bool any = false;
   for (const Hits& hits : queries) {
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t i = first_item; i < first_item + item_count; ++i) {
+    std::vector<uint32_t> all;
+    for (uint32_t i = first_item; i < first_item + item_count; ++i) {
       const BvhItem each = item_of(i);
       if (hits(each.low, each.high)) all.push_back(each.number);
     }

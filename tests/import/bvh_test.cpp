@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <random>
 
 #include "bvh_expect.h"
@@ -30,16 +31,16 @@ Tree build(std::vector<BvhItem> items) {
   return tree;
 }
 
-BvhItem item(std::uint32_t number, const glm::vec3& low, const glm::vec3& high) {
+BvhItem item(uint32_t number, const glm::vec3& low, const glm::vec3& high) {
   return {low, number, high, 1};
 }
 
 /// Boxes of sides up to `size` in a cube of side 100.
-std::vector<BvhItem> random_items(std::uint32_t count, float size, unsigned seed) {
+std::vector<BvhItem> random_items(uint32_t count, float size, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> place(0, 100), side(0, size);
   std::vector<BvhItem> items;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (uint32_t i = 0; i < count; ++i) {
     const glm::vec3 low(place(random), place(random), place(random));
     items.push_back(item(i, low, low + glm::vec3(side(random), side(random), side(random))));
   }
@@ -47,7 +48,7 @@ std::vector<BvhItem> random_items(std::uint32_t count, float size, unsigned seed
 }
 
 /// And each of the `count` items once.
-void expect_tree_of(const Tree& tree, std::size_t count) {
+void expect_tree_of(const Tree& tree, size_t count) {
   ASSERT_EQ(tree.items.size(), count);
   std::vector<bool> is_there(count, false);
   for (const BvhItem& each : tree.items) {
@@ -55,9 +56,9 @@ void expect_tree_of(const Tree& tree, std::size_t count) {
     ASSERT_FALSE(is_there[each.number]);
     is_there[each.number] = true;
   }
-  expect_tree(tree.nodes, tree.areas, 0, static_cast<std::uint32_t>(tree.nodes.size()), 0,
-              [&](std::uint32_t i) { return tree.items[i]; });
-  std::uint64_t items = 0;
+  expect_tree(tree.nodes, tree.areas, 0, static_cast<uint32_t>(tree.nodes.size()), 0,
+              [&](uint32_t i) { return tree.items[i]; });
+  uint64_t items = 0;
   for (const pack::BvhNode& node : tree.nodes) items += node.leaf == pack::none ? 0 : node.leaf % 16;
   ASSERT_EQ(items, count);
 }
@@ -70,15 +71,15 @@ double median_cost(std::span<BvhItem> items) {
   const double area = size.x * size.y + size.y * size.z + size.z * size.x;
   if (items.size() <= 4) return area * (1 + static_cast<double>(items.size()));
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const std::size_t half = items.size() / 2;
+  const size_t half = items.size() / 2;
   std::nth_element(
-      items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(),
+      items.begin(), items.begin() + static_cast<ptrdiff_t>(half), items.end(),
       [&](const BvhItem& a, const BvhItem& b) { return a.low[axis] + a.high[axis] < b.low[axis] + b.high[axis]; });
   return area + median_cost(items.first(half)) + median_cost(items.subspan(half));
 }
 
 TEST(Bvh, HoldsEachItemOnceInNestedBoxes) {
-  for (const std::uint32_t count : {1u, 2u, 3u, 4u, 5u, 6u, 15u, 16u, 17u, 100u, 1000u, 20000u}) {
+  for (const uint32_t count : {1u, 2u, 3u, 4u, 5u, 6u, 15u, 16u, 17u, 100u, 1000u, 20000u}) {
     for (const float size : {0.0f, 1.0f, 60.0f}) {
       SCOPED_TRACE(testing::Message() << count << " items of " << size << " m");
       expect_tree_of(build(random_items(count, size, count)), count);
@@ -95,14 +96,14 @@ TEST(Bvh, FindsWhatALookAtEveryItemFinds) {
   for (const float size : {1.0f, 20.0f}) {
     const Tree tree = build(random_items(3000, size, 5));
     EXPECT_TRUE(expect_found(
-        tree.nodes, 0, static_cast<std::uint32_t>(tree.nodes.size()), 0, 3000,
-        [&](std::uint32_t i) { return tree.items[i]; }, random_queries({glm::vec3(0), glm::vec3(100 + size)}, 100, 6)));
+        tree.nodes, 0, static_cast<uint32_t>(tree.nodes.size()), 0, 3000, [&](uint32_t i) { return tree.items[i]; },
+        random_queries({glm::vec3(0), glm::vec3(100 + size)}, 100, 6)));
   }
 }
 
 TEST(Bvh, SeparatesWhatStandsApart) {
   std::vector<BvhItem> items = random_items(300, 1, 1);
-  for (std::size_t i = 0; i < items.size(); i += 3) {
+  for (size_t i = 0; i < items.size(); i += 3) {
     items[i].low.x += 10000;
     items[i].high.x += 10000;
   }
@@ -125,10 +126,10 @@ TEST(Bvh, CostsLessThanHalvingAtTheMedian) {
 }
 
 TEST(Bvh, TakesItemsOfOneCentre) {
-  for (const std::uint32_t count : {2u, 5u, 15u, 16u, 1000u, 40000u}) {
+  for (const uint32_t count : {2u, 5u, 15u, 16u, 1000u, 40000u}) {
     SCOPED_TRACE(count);
     std::vector<BvhItem> same, nested;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (uint32_t i = 0; i < count; ++i) {
       same.push_back(item(i, {1, 2, 3}, {2, 3, 4}));
       nested.push_back(item(i, -glm::vec3(static_cast<float>(i)), glm::vec3(static_cast<float>(i))));
     }
@@ -142,13 +143,13 @@ TEST(Bvh, TakesItemsOfOneCentre) {
 TEST(Bvh, IsNotAsDeepAsItsItemsAre) {
   // Each item is half as far and half as large as the one before: cutting off the outermost is always best.
   std::vector<BvhItem> items;
-  for (std::uint32_t i = 0; i < 240; ++i) {
+  for (uint32_t i = 0; i < 240; ++i) {
     const float at = std::ldexp(1.0f, 120 - static_cast<int>(i));
     items.push_back(item(i, glm::vec3(at), glm::vec3(1.01f * at)));
   }
   // And a hundred thousand points that are all but one in one place.
   std::vector<BvhItem> points(100000, item(0, {0, 0, 0}, {0, 0, 0}));
-  for (std::uint32_t i = 0; i < points.size(); ++i) points[i].number = i;
+  for (uint32_t i = 0; i < points.size(); ++i) points[i].number = i;
   points[70001].low = points[70001].high = {1, 0, 0};
   for (const auto& each : {items, points}) {
     const Tree tree = build(each);
@@ -168,7 +169,7 @@ TEST(Bvh, TakesWhatIsHugeTinyOrFlat) {
     expect_tree_of(build(items), items.size());
   }
   std::vector<BvhItem> ends, flat = random_items(2000, 1, 4);
-  for (std::uint32_t i = 0; i < 100; ++i)
+  for (uint32_t i = 0; i < 100; ++i)
     ends.push_back(item(i, glm::vec3(i % 2 ? -largest_float : largest_float), glm::vec3(largest_float)));
   for (BvhItem& each : flat) each.low.y = each.high.y = 7;
   expect_tree_of(build(ends), ends.size());
@@ -176,26 +177,26 @@ TEST(Bvh, TakesWhatIsHugeTinyOrFlat) {
 }
 
 /// Groups of 90 neighbours, treelets of each in `parts` blocks, one tree.
-Tree build_of_treelets(std::vector<BvhItem> items, std::size_t parts) {
-  constexpr std::size_t group = 90;
+Tree build_of_treelets(std::vector<BvhItem> items, size_t parts) {
+  constexpr size_t group = 90;
   shape_bvh(items);  // neighbours side by side
   std::vector<Treelets> treelets(parts);
-  for (std::size_t first = 0; first < items.size(); first += group) {
-    shape_treelets(std::span(items).subspan(first, std::min(group, items.size() - first)),
-                   static_cast<std::uint32_t>(first), treelets[first * parts / items.size()]);
+  for (size_t first = 0; first < items.size(); first += group) {
+    shape_treelets(std::span(items).subspan(first, std::min(group, items.size() - first)), static_cast<uint32_t>(first),
+                   treelets[first * parts / items.size()]);
   }
-  std::vector<std::uint32_t> order;
+  std::vector<uint32_t> order;
   const BvhShape shape = join_treelets(treelets, order);
   Tree tree;
   tree.nodes.resize(shape.size());
   tree.areas.resize(shape.size());
   fill_bvh(items, order, shape, {}, tree.nodes, tree.areas);
-  for (const std::uint32_t number : order) tree.items.push_back(items[number]);
+  for (const uint32_t number : order) tree.items.push_back(items[number]);
   return tree;
 }
 
 TEST(Bvh, OfTreeletsCostsLittleMoreThanOfItems) {
-  for (const std::uint32_t count : {1u, 32u, 33u, 90u, 1000u, 100000u}) {
+  for (const uint32_t count : {1u, 32u, 33u, 90u, 1000u, 100000u}) {
     SCOPED_TRACE(count);
     const std::vector<BvhItem> items = random_items(count, 1, 5);
     const Tree tree = build_of_treelets(items, 3);
@@ -207,7 +208,7 @@ TEST(Bvh, OfTreeletsCostsLittleMoreThanOfItems) {
 
 TEST(Bvh, OfTreeletsTakesWhatCannotBeCut) {
   std::vector<BvhItem> same, ends;
-  for (std::uint32_t i = 0; i < 20000; ++i) {
+  for (uint32_t i = 0; i < 20000; ++i) {
     same.push_back(item(i, {1, 2, 3}, {2, 3, 4}));
     ends.push_back(item(i, glm::vec3(i % 2 ? -largest_float : largest_float), glm::vec3(largest_float)));
   }
@@ -217,7 +218,7 @@ TEST(Bvh, OfTreeletsTakesWhatCannotBeCut) {
 
 TEST(Bvh, IsTheSameOnAnyNumberOfThreads) {
   const std::vector<BvhItem> items = random_items(200000, 3, 9);
-  const auto build_with = [&](std::size_t threads) {
+  const auto build_with = [&](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return build(items);
   };

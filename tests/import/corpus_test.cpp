@@ -49,9 +49,9 @@ Verdict bake_file(const std::filesystem::path& path) {
 }
 
 /// Every file below `folder` bakes; returns how many there are.
-std::size_t bake_all(const std::filesystem::path& folder) {
+size_t bake_all(const std::filesystem::path& folder) {
   const std::vector<std::filesystem::path> paths = gltfs_below(folder);
-  std::size_t warned = 0;
+  size_t warned = 0;
   for (const std::filesystem::path& path : paths) {
     const Verdict verdict = bake_file(path);
     EXPECT_EQ(verdict.error, "");
@@ -69,7 +69,7 @@ TEST(Corpus, BakesTheKhronosModels) {
 
 TEST(Corpus, BakesTheKitsAndTheOtherModels) {
   if (!std::filesystem::exists(data / "kits")) GTEST_SKIP() << "no " << data / "kits";
-  std::size_t baked = bake_all(data / "kits");
+  size_t baked = bake_all(data / "kits");
   for (const auto& entry : std::filesystem::directory_iterator(data / "models")) {
     if (entry.is_directory() && entry.path().filename() != "khronos") baked += bake_all(entry.path());
   }
@@ -192,7 +192,7 @@ bool is_told(const std::string& code, const std::vector<std::string>& warnings) 
 TEST(Corpus, JudgesTheValidatorsFilesByTheRule) {
   const std::filesystem::path folder = data / "conformance" / "gltf-validator-base";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
-  std::map<std::string, std::size_t> counts;
+  std::map<std::string, size_t> counts;
   for (const std::filesystem::path& path : gltfs_below(folder)) {
     const std::filesystem::path report = path.string() + ".report.json";
     if (!std::filesystem::exists(report)) continue;

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstddef>
 
 #include "bake/decode.h"
 #include "encode_image.h"
@@ -12,33 +13,32 @@
 namespace chandelier::baker::test {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = std::vector<uint8_t>;
 
-constexpr std::size_t side = 64;
+constexpr size_t side = 64;
 
 /// Where a chunk of a PNG begins: its length, then its type.
-std::size_t chunk_at(const Bytes& png, const std::string& type) {
-  return static_cast<std::size_t>(std::search(png.begin(), png.end(), type.begin(), type.end()) - png.begin()) - 4;
+size_t chunk_at(const Bytes& png, const std::string& type) {
+  return static_cast<size_t>(std::search(png.begin(), png.end(), type.begin(), type.end()) - png.begin()) - 4;
 }
 
 /// A chunk with `data`; its checksum is right, or off by one.
 Bytes chunk(const std::string& type, const Bytes& data, bool right = true) {
-  const auto u32 = [](std::uint32_t value) {
-    return Bytes{static_cast<std::uint8_t>(value >> 24), static_cast<std::uint8_t>(value >> 16),
-                 static_cast<std::uint8_t>(value >> 8), static_cast<std::uint8_t>(value)};
+  const auto u32 = [](uint32_t value) {
+    return Bytes{static_cast<uint8_t>(value >> 24), static_cast<uint8_t>(value >> 16), static_cast<uint8_t>(value >> 8),
+                 static_cast<uint8_t>(value)};
   };
   Bytes named(type.begin(), type.end());
   named.insert(named.end(), data.begin(), data.end());
-  Bytes out = u32(static_cast<std::uint32_t>(data.size()));
+  Bytes out = u32(static_cast<uint32_t>(data.size()));
   out.insert(out.end(), named.begin(), named.end());
-  const Bytes sum = u32(static_cast<std::uint32_t>(crc32_z(0, named.data(), named.size())) + (right ? 0 : 1));
+  const Bytes sum = u32(static_cast<uint32_t>(crc32_z(0, named.data(), named.size())) + (right ? 0 : 1));
   out.insert(out.end(), sum.begin(), sum.end());
   return out;
 }
 
 EncodedImage with_chunk(EncodedImage png, const Bytes& added) {
-  png.bytes.insert(png.bytes.begin() + static_cast<std::ptrdiff_t>(chunk_at(png.bytes, "IDAT")), added.begin(),
-                   added.end());
+  png.bytes.insert(png.bytes.begin() + static_cast<ptrdiff_t>(chunk_at(png.bytes, "IDAT")), added.begin(), added.end());
   return png;
 }
 
@@ -51,9 +51,9 @@ EncodedImage noisy_jpeg() {
 }
 
 /// The rows from `first` to `end` of two images are equal.
-bool same_rows(const Texels& a, const Texels& b, std::size_t first, std::size_t end) {
-  const auto row = [](const Texels& texels, std::size_t y) {
-    return texels.rgba.begin() + static_cast<std::ptrdiff_t>(4 * y * texels.width);
+bool same_rows(const Texels& a, const Texels& b, size_t first, size_t end) {
+  const auto row = [](const Texels& texels, size_t y) {
+    return texels.rgba.begin() + static_cast<ptrdiff_t>(4 * y * texels.width);
   };
   return std::equal(row(a, first), row(a, end), row(b, first));
 }
@@ -61,9 +61,9 @@ bool same_rows(const Texels& a, const Texels& b, std::size_t first, std::size_t 
 TEST(Damaged, JpegWithBytesThatTheDecoderSkipsIsWhole) {
   const EncodedImage whole = noisy_jpeg();
   const Bytes rubbish = {1, 2, 3};  // between the first two segments, where a marker should be
-  const std::size_t second = 4 + (std::size_t{whole.bytes[4]} << 8 | whole.bytes[5]);
+  const size_t second = 4 + (size_t{whole.bytes[4]} << 8 | whole.bytes[5]);
   EncodedImage between = whole;
-  between.bytes.insert(between.bytes.begin() + static_cast<std::ptrdiff_t>(second), rubbish.begin(), rubbish.end());
+  between.bytes.insert(between.bytes.begin() + static_cast<ptrdiff_t>(second), rubbish.begin(), rubbish.end());
   const DecodedTexels decoded = decode_image(between);
   EXPECT_EQ(decoded.texels.rgba, decode_image(whole).texels.rgba);
   // Once, in one line, without the name that the decoder was given.
@@ -89,8 +89,8 @@ TEST(Damaged, PngWithAWrongChecksumIsWhole) {
   const EncodedImage whole = noisy_png();
   const Texels expected = decode_image(whole).texels;
   EncodedImage data = whole;
-  const std::size_t idat = chunk_at(whole.bytes, "IDAT");
-  const std::size_t size = std::size_t{whole.bytes[idat + 2]} << 8 | whole.bytes[idat + 3];
+  const size_t idat = chunk_at(whole.bytes, "IDAT");
+  const size_t size = size_t{whole.bytes[idat + 2]} << 8 | whole.bytes[idat + 3];
   data.bytes[idat + 8 + size] ^= 1;
   const DecodedTexels decoded = decode_image(data);
   EXPECT_EQ(decoded.damage, "PNG is damaged: the checksum of chunk IDAT at byte " + std::to_string(idat) + " is wrong");
@@ -122,9 +122,9 @@ TEST(Damaged, PngThatIsCutRepeatsItsLastRow) {
   const DecodedTexels half = decode_image(cut);
   EXPECT_EQ(half.damage, "PNG is cut short (" + std::to_string(cut.bytes.size()) + " bytes)");
   EXPECT_TRUE(same_rows(half.texels, expected, 0, side / 3));
-  const std::size_t row = 4 * side;
-  const auto last = half.texels.rgba.end() - static_cast<std::ptrdiff_t>(row);
-  EXPECT_TRUE(std::equal(last, half.texels.rgba.end(), last - static_cast<std::ptrdiff_t>(row)));
+  const size_t row = 4 * side;
+  const auto last = half.texels.rgba.end() - static_cast<ptrdiff_t>(row);
+  EXPECT_TRUE(std::equal(last, half.texels.rgba.end(), last - static_cast<ptrdiff_t>(row)));
   EXPECT_FALSE(same_rows(half.texels, expected, side - 1, side));
   EncodedImage tail = whole;  // all rows, but neither their checksum nor an end
   tail.bytes.resize(tail.bytes.size() - 20);
@@ -134,15 +134,15 @@ TEST(Damaged, PngThatIsCutRepeatsItsLastRow) {
 TEST(Damaged, PngWithRubbishInItsDataKeepsTheRowsBefore) {
   const EncodedImage whole = noisy_png();
   EncodedImage broken = whole;
-  const std::size_t idat = chunk_at(whole.bytes, "IDAT");
-  std::fill_n(broken.bytes.begin() + static_cast<std::ptrdiff_t>(idat + 8 + side * side * 2), 64, 0xFF);
+  const size_t idat = chunk_at(whole.bytes, "IDAT");
+  std::fill_n(broken.bytes.begin() + static_cast<ptrdiff_t>(idat + 8 + side * side * 2), 64, 0xFF);
   const DecodedTexels decoded = decode_image(broken);
   EXPECT_NE(decoded.damage, "");
   EXPECT_TRUE(same_rows(decoded.texels, decode_image(whole).texels, 0, side / 2));
 }
 
 TEST(Damaged, FilesWithoutAPictureAreErrorsOfOneLine) {
-  EncodedImage claims = encoded("jpg", 8192, 8192, 1, Bytes(std::size_t{8192} * 8192, 128));
+  EncodedImage claims = encoded("jpg", 8192, 8192, 1, Bytes(size_t{8192} * 8192, 128));
   claims.bytes.resize(700);  // headers and a little of the scan
   EXPECT_EQ(decode_error(claims), "test: image: JPEG is cut short (700 bytes)");
   EncodedImage head = noisy_png();
@@ -266,7 +266,7 @@ TEST(Damaged, MapsThatOnlyTellGlassAreNamedToo) {
 
 TEST(Webp, IsDecodedToItsColours) {
   Bytes pixels;
-  for (std::size_t i = 0; i < 16 * 16; ++i) pixels.insert(pixels.end(), {200, 100, 50});
+  for (size_t i = 0; i < 16 * 16; ++i) pixels.insert(pixels.end(), {200, 100, 50});
   const Texels texels = decode_image(encoded("webp", 16, 16, 3, pixels)).texels;
   ASSERT_EQ(texels.width, 16u);
   EXPECT_NEAR(texels.rgba[0], 200, 3);  // lossy
@@ -309,9 +309,9 @@ TEST(Webp, KeepsColoursThatItsAlphaHides) {
     const DecodedTexels decoded = decode_image({"", "test: image", bytes});
     EXPECT_EQ(decoded.damage, "");
     ASSERT_EQ(decoded.texels.rgba.size(), 4 * side * side);
-    for (std::size_t y = 0; y < side; ++y) {
-      for (std::size_t x = 0; x < side; ++x) {
-        const std::uint8_t* texel = &decoded.texels.rgba[4 * (y * side + x)];
+    for (size_t y = 0; y < side; ++y) {
+      for (size_t x = 0; x < side; ++x) {
+        const uint8_t* texel = &decoded.texels.rgba[4 * (y * side + x)];
         EXPECT_NEAR(texel[0], static_cast<double>(4 * x), error);
         EXPECT_NEAR(texel[1], static_cast<double>(4 * y), error);
         EXPECT_NEAR(texel[2], 40, error);
@@ -340,7 +340,7 @@ TEST(Webp, IsTakenWhereTheTextureHasNoOtherImage) {
 
 TEST(Webp, ThatIsCutIsAnError) {
   EncodedImage cut{"", "test: image", lossless_webp};
-  for (std::size_t size = 4; size < lossless_webp.size() - 1; ++size) {
+  for (size_t size = 4; size < lossless_webp.size() - 1; ++size) {
     cut.bytes.resize(lossless_webp.size());
     std::copy(lossless_webp.begin(), lossless_webp.end(), cut.bytes.begin());
     cut.bytes.resize(size);

@@ -25,7 +25,7 @@ Scene import_file(const std::filesystem::path& path) {
 std::vector<glm::vec3> corners_of(const Scene& scene) {
   std::vector<glm::vec3> out;
   const Primitive& primitive = scene.meshes.at(0).primitives.at(0);
-  for (const std::uint32_t index : primitive.indices) out.push_back(primitive.vertices[index].position_ls);
+  for (const uint32_t index : primitive.indices) out.push_back(primitive.vertices[index].position_ls);
   return out;
 }
 
@@ -86,10 +86,10 @@ TEST(Draco, IsRefusedWhereItsNumbersDoNotFit) {
   const Json good = box.json;
   const auto primitive = [&]() -> Json& { return box.json["meshes"][0]["primitives"][0]; };
   const std::string at = ", primitive 0, KHR_draco_mesh_compression";
-  box.json["accessors"][primitive()["attributes"]["POSITION"].get<std::size_t>()]["count"] = 23;
+  box.json["accessors"][primitive()["attributes"]["POSITION"].get<size_t>()]["count"] = 23;
   EXPECT_NE(box.error().find("another number of vertices than its accessors, which have 23 (24)"), std::string::npos);
   box.json = good;
-  box.json["accessors"][primitive()["indices"].get<std::size_t>()]["count"] = 39;
+  box.json["accessors"][primitive()["indices"].get<size_t>()]["count"] = 39;
   EXPECT_NE(box.error().find("another number of triangle corners than its accessors, which have 39 (36)"),
             std::string::npos);
   box.json = good;
@@ -103,8 +103,8 @@ TEST(Draco, IsRefusedWhereItsNumbersDoNotFit) {
 TEST(Draco, SurvivesEveryChangedByteAndEveryTruncation) {
   if (!std::filesystem::exists(models)) GTEST_SKIP() << "no " << models;
   const CompressedBox good;
-  std::size_t refused = 0;
-  for (std::size_t i = 0; i < good.stream.size(); ++i) {
+  size_t refused = 0;
+  for (size_t i = 0; i < good.stream.size(); ++i) {
     for (const int change : {0x01, 0x80, 0xFF}) {
       CompressedBox box = good;
       box.stream[i] = static_cast<char>(box.stream[i] ^ change);
@@ -112,8 +112,8 @@ TEST(Draco, SurvivesEveryChangedByteAndEveryTruncation) {
     }
     CompressedBox cut = good;
     const Json& extension = cut.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"];
-    Json& view = cut.json["bufferViews"][extension["bufferView"].get<std::size_t>()];
-    if (i < view["byteLength"].get<std::size_t>()) {
+    Json& view = cut.json["bufferViews"][extension["bufferView"].get<size_t>()];
+    if (i < view["byteLength"].get<size_t>()) {
       view["byteLength"] = i;
       EXPECT_NE(cut.error(), "") << i;
     }

@@ -13,7 +13,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = std::vector<uint8_t>;
 
 Json& primitive(GltfBuilder& gltf) {
   return gltf.json["meshes"][0]["primitives"][0];
@@ -22,16 +22,16 @@ Json& primitive(GltfBuilder& gltf) {
 /// A grid of quads in the plane z = 0.
 struct Grid {
   std::vector<float> positions;
-  std::vector<std::uint32_t> indices;
+  std::vector<uint32_t> indices;
 };
 
-Grid make_grid(std::uint32_t side) {
+Grid make_grid(uint32_t side) {
   Grid out;
-  for (std::uint32_t y = 0; y <= side; ++y) {
-    for (std::uint32_t x = 0; x <= side; ++x) {
+  for (uint32_t y = 0; y <= side; ++y) {
+    for (uint32_t x = 0; x <= side; ++x) {
       out.positions.insert(out.positions.end(), {static_cast<float>(x), static_cast<float>(y) * 0.5f, 0});
       if (x == side || y == side) continue;
-      const std::uint32_t a = y * (side + 1) + x, b = a + side + 1;
+      const uint32_t a = y * (side + 1) + x, b = a + side + 1;
       out.indices.insert(out.indices.end(), {a, a + 1, b, b, a + 1, b + 1});
     }
   }
@@ -39,7 +39,7 @@ Grid make_grid(std::uint32_t side) {
 }
 
 /// A buffer view whose data is compressed; its own buffer, number 1, is a fallback without data.
-int add_compressed(GltfBuilder& gltf, const Bytes& data, const char* mode, std::size_t count, std::size_t stride,
+int add_compressed(GltfBuilder& gltf, const Bytes& data, const char* mode, size_t count, size_t stride,
                    const char* filter = nullptr) {
   const int view = gltf.add_view(data);
   Json& json = gltf.json["bufferViews"][view];
@@ -61,19 +61,19 @@ glm::dvec3 turned_by(const float* xyzw) {
   return {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
 }
 
-Bytes encode_vertices(const void* data, std::size_t count, std::size_t stride) {
+Bytes encode_vertices(const void* data, size_t count, size_t stride) {
   Bytes out(meshopt_encodeVertexBufferBound(count, stride));
   out.resize(meshopt_encodeVertexBuffer(out.data(), out.size(), data, count, stride));
   return out;
 }
 
-Bytes encode_triangles(const std::vector<std::uint32_t>& indices, std::size_t vertices) {
+Bytes encode_triangles(const std::vector<uint32_t>& indices, size_t vertices) {
   Bytes out(meshopt_encodeIndexBufferBound(indices.size(), vertices));
   out.resize(meshopt_encodeIndexBuffer(out.data(), out.size(), indices.data(), indices.size()));
   return out;
 }
 
-Bytes encode_sequence(const std::vector<std::uint32_t>& indices, std::size_t vertices) {
+Bytes encode_sequence(const std::vector<uint32_t>& indices, size_t vertices) {
   Bytes out(meshopt_encodeIndexSequenceBound(indices.size(), vertices));
   out.resize(meshopt_encodeIndexSequence(out.data(), out.size(), indices.data(), indices.size()));
   return out;
@@ -82,7 +82,7 @@ Bytes encode_sequence(const std::vector<std::uint32_t>& indices, std::size_t ver
 /// View 0: positions, view 1: indices. The builder writes buffer 0; buffer 1 is added to its text.
 GltfBuilder compressed_grid(bool as_sequence) {
   const Grid grid = make_grid(20);
-  const std::size_t vertices = grid.positions.size() / 3;
+  const size_t vertices = grid.positions.size() / 3;
   GltfBuilder gltf;
   gltf.fallback_bytes = 1u << 20;
   const int positions =
@@ -107,14 +107,14 @@ TEST(Meshopt, DecodesVerticesTrianglesAndSequences) {
     const Scene scene = compressed_grid(as_sequence).import();
     const Primitive& read = scene.meshes.at(0).primitives.at(0);
     ASSERT_EQ(read.vertices.size() * 3, grid.positions.size());
-    for (std::size_t i = 0; i < read.vertices.size(); ++i) {
+    for (size_t i = 0; i < read.vertices.size(); ++i) {
       EXPECT_EQ(read.vertices[i].position_ls, glm::vec3(grid.positions[3 * i], grid.positions[3 * i + 1], 0));
     }
     ASSERT_EQ(read.indices.size(), grid.indices.size());
-    for (std::size_t i = 0; i < grid.indices.size(); i += 3) {  // the codec may begin a triangle at another corner
+    for (size_t i = 0; i < grid.indices.size(); i += 3) {  // the codec may begin a triangle at another corner
       const auto first = std::find(&read.indices[i], &read.indices[i] + 3, grid.indices[i]) - &read.indices[i];
       ASSERT_LT(first, 3);
-      EXPECT_EQ(read.indices[i + static_cast<std::size_t>(first + 1) % 3], grid.indices[i + 1]);
+      EXPECT_EQ(read.indices[i + static_cast<size_t>(first + 1) % 3], grid.indices[i + 1]);
     }
   }
 }
@@ -137,7 +137,7 @@ TEST(Meshopt, AppliesTheOctahedralAndTheExponentialFilter) {
       gltf.append("accessors", {{"bufferView", e}, {"componentType", float_type}, {"type", "VEC2"}, {"count", 3}});
   const Scene scene = gltf.import();
   const Primitive& read = scene.meshes.at(0).primitives.at(0);
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (size_t i = 0; i < 3; ++i) {
     const glm::vec3 normal(normals[4 * i], normals[4 * i + 1], normals[4 * i + 2]);
     EXPECT_LT(glm::length(read.vertices[i].normal_ls - normal), 0.03f);
     EXPECT_LT(glm::length(read.vertices[i].uv0 - glm::vec2(uvs[2 * i], uvs[2 * i + 1])), 0.01f);
@@ -159,7 +159,7 @@ TEST(Meshopt, AppliesTheQuaternionFilter) {
   gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"ROTATION", accessor}};
   const Scene scene = gltf.import();
   ASSERT_EQ(scene.instances.size(), 2u);
-  const auto turned = [&](std::size_t i) { return glm::dvec3(scene.instances[i].world_from_local[0]); };  // (1, 0, 0)
+  const auto turned = [&](size_t i) { return glm::dvec3(scene.instances[i].world_from_local[0]); };  // (1, 0, 0)
   EXPECT_LT(glm::length(turned(0) - turned_by(rotations.data())), 1e-3);
   EXPECT_LT(glm::length(turned(1) - glm::dvec3(0, 1, 0)), 1e-3);
 }
@@ -197,8 +197,8 @@ TEST(Meshopt, IsRefusedWhereItsNumbersDoNotFit) {
 
 TEST(Meshopt, SurvivesEveryChangedByte) {
   const GltfBuilder good = compressed_grid(false);
-  std::size_t refused = 0;
-  for (std::size_t i = 0; i < good.bytes.size(); ++i) {
+  size_t refused = 0;
+  for (size_t i = 0; i < good.bytes.size(); ++i) {
     GltfBuilder gltf = good;
     gltf.bytes[i] ^= 0xFF;
     refused += !error_of(gltf.save("meshopt")).empty();  // another exception, or a crash, fails the test
@@ -216,9 +216,7 @@ TEST(Instancing, PlacesTheMeshOncePerElement) {
   gltf.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
   const Scene scene = gltf.import();
   ASSERT_EQ(scene.instances.size(), 2u);
-  const auto moved = [&](std::size_t i) {
-    return glm::dvec3(scene.instances[i].world_from_local * glm::dvec4(1, 1, 0, 1));
-  };
+  const auto moved = [&](size_t i) { return glm::dvec3(scene.instances[i].world_from_local * glm::dvec4(1, 1, 0, 1)); };
   EXPECT_LT(glm::length(moved(0) - glm::dvec3(102, 3, 3)), 1e-6);
   // (1,1,0): scaled (2,3,0), turned a quarter about z (-3,2,0), moved (1,7,6), and the node's own 100.
   EXPECT_LT(glm::length(moved(1) - glm::dvec3(101, 7, 6)), 1e-5);
@@ -234,7 +232,7 @@ TEST(Instancing, MirrorsCopiesWithFrontsCounterClockwiseInTheWorld) {
   for (const pack::BatchInstance& draw : pack.batch_instances) {
     const pack::Instance& instance = pack.instances[draw.instance];
     glm::vec3 corner[3];
-    for (std::uint32_t c = 0; c < 3; ++c) {
+    for (uint32_t c = 0; c < 3; ++c) {
       const auto& index = pack.indices[pack.batches[draw.batch].first_index + c];
       const glm::vec4 local(pack.positions[index.vertex].position_ls, 1);
       for (int row = 0; row < 3; ++row) corner[c][row] = glm::dot(instance.world_from_local[row], local);
@@ -258,7 +256,7 @@ TEST(Instancing, MovesItsCopiesWithTheNodeAbove) {
   const pack::Contents pack = gltf.bake();
   ASSERT_EQ(pack.instances.size(), 2u);
   ASSERT_EQ(pack.nodes.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (size_t i = 0; i < 2; ++i) {
     const pack::Instance& instance = pack.instances[i];
     EXPECT_EQ(instance.dynamic, 1u);
     EXPECT_EQ(text_of(pack, pack.nodes.at(instance.node).name), "triangle");

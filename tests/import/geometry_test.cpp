@@ -9,7 +9,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-using Indices = std::vector<std::uint32_t>;
+using Indices = std::vector<uint32_t>;
 
 constexpr int points_mode = 0, lines_mode = 1, triangles_mode = 4, strip_mode = 5, fan_mode = 6;
 
@@ -41,8 +41,8 @@ TEST(Primitive, MakesStripsAndFansWithoutIndicesFaceTheRightWay) {
     const Scene scene = gltf.import();
     const Primitive& primitive = scene.meshes.at(0).primitives.at(0);
     ASSERT_EQ(primitive.indices.size(), 6u);
-    for (std::size_t i = 0; i < 6; i += 3) {
-      const auto corner = [&](std::size_t c) { return primitive.vertices[primitive.indices[i + c]].position_ls; };
+    for (size_t i = 0; i < 6; i += 3) {
+      const auto corner = [&](size_t c) { return primitive.vertices[primitive.indices[i + c]].position_ls; };
       EXPECT_GT(glm::cross(corner(1) - corner(0), corner(2) - corner(0)).z, 0) << "mode " << mode;
     }
   }
@@ -79,14 +79,13 @@ TEST(Primitive, ReadsBothTextureCoordinateSetsOfAnyType) {
   GltfBuilder gltf = one_triangle();
   Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["TEXCOORD_0"] = gltf.add_floats({0, 1, 2, 3, 4, 5}, "VEC2", 2);
-  attributes["TEXCOORD_1"] =
-      gltf.add_accessor<std::uint8_t>({0, 255, 51, 0, 255, 255}, unsigned_byte_type, "VEC2", 3, true);
+  attributes["TEXCOORD_1"] = gltf.add_accessor<uint8_t>({0, 255, 51, 0, 255, 255}, unsigned_byte_type, "VEC2", 3, true);
   const Primitive primitive = gltf.import().meshes.at(0).primitives.at(0);
   EXPECT_EQ(primitive.vertices[1].uv0, glm::vec2(2, 3));
   EXPECT_EQ(primitive.vertices[1].uv1, glm::vec2(0.2f, 0));
 }
 
-std::uint32_t color_of(GltfBuilder gltf, int accessor) {
+uint32_t color_of(GltfBuilder gltf, int accessor) {
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor;
   return gltf.import().meshes.at(0).primitives.at(0).vertices.at(0).color;
 }
@@ -96,11 +95,11 @@ TEST(Primitive, PacksVertexColoursOfEachType) {
   // 1.0 -> 255, 0.5 -> 127.5 rounds to 128, 0.2 -> 51; clamped above 1; alpha 255 where there is none.
   EXPECT_EQ(color_of(gltf, gltf.add_floats({1, 0.5f, 0.2f, 0, 0, 0, 0, 0, 0}, "VEC3", 3)), 0xFF3380FFu);
   EXPECT_EQ(color_of(gltf, gltf.add_floats({2, 0.5f, 0.2f, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 4)), 0x003380FFu);
-  EXPECT_EQ(color_of(gltf, gltf.add_accessor<std::uint8_t>({1, 2, 3, 4, 0, 0, 0, 0, 0, 0, 0, 0}, unsigned_byte_type,
-                                                           "VEC4", 3, true)),
+  EXPECT_EQ(color_of(gltf, gltf.add_accessor<uint8_t>({1, 2, 3, 4, 0, 0, 0, 0, 0, 0, 0, 0}, unsigned_byte_type, "VEC4",
+                                                      3, true)),
             0x04030201u);
-  EXPECT_EQ(color_of(gltf, gltf.add_accessor<std::uint16_t>({65535, 257, 0, 0, 0, 0, 0, 0, 0}, unsigned_short_type,
-                                                            "VEC3", 3, true)),
+  EXPECT_EQ(color_of(gltf, gltf.add_accessor<uint16_t>({65535, 257, 0, 0, 0, 0, 0, 0, 0}, unsigned_short_type, "VEC3",
+                                                       3, true)),
             0xFF0001FFu);
   EXPECT_EQ(one_triangle().import().meshes.at(0).primitives.at(0).vertices.at(0).color, 0xFFFFFFFFu);
 }

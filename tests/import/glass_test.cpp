@@ -11,11 +11,11 @@ namespace chandelier::baker::test {
 namespace {
 
 /// A PNG of 2 by 1 texels: red, which lets light through and is no metal, and blue, which does not and is.
-const std::vector<std::uint8_t> png = {
-    0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48, 0x44, 0x52, 0x00, 0x00,
-    0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x02, 0x00, 0x00, 0x00, 0x7B, 0x40, 0xE8, 0xDD, 0x00, 0x00, 0x00,
-    0x0D, 0x49, 0x44, 0x41, 0x54, 0x78, 0xDA, 0x63, 0xF8, 0xCF, 0x00, 0x04, 0xFF, 0x01, 0x07, 0x00, 0x01, 0xFF,
-    0x3D, 0x7D, 0x8C, 0x49, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4E, 0x44, 0xAE, 0x42, 0x60, 0x82};
+const std::vector<uint8_t> png = {0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48,
+                                  0x44, 0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x02, 0x00, 0x00,
+                                  0x00, 0x7B, 0x40, 0xE8, 0xDD, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x44, 0x41, 0x54, 0x78,
+                                  0xDA, 0x63, 0xF8, 0xCF, 0x00, 0x04, 0xFF, 0x01, 0x07, 0x00, 0x01, 0xFF, 0x3D, 0x7D,
+                                  0x8C, 0x49, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4E, 0x44, 0xAE, 0x42, 0x60, 0x82};
 
 /// The triangle, of a material that lets `factor` of the light through and is no metal.
 GltfBuilder pane(double factor) {
@@ -50,8 +50,8 @@ Baked bake_with(const GltfBuilder& gltf, bool glass_shadows = false) {
 }
 
 /// How many of the drawn triangles cast a shadow, and how many do not.
-std::pair<std::uint32_t, std::uint32_t> casting(const pack::Contents& pack) {
-  std::pair<std::uint32_t, std::uint32_t> out;
+std::pair<uint32_t, uint32_t> casting(const pack::Contents& pack) {
+  std::pair<uint32_t, uint32_t> out;
   for (const pack::Batch& batch : pack.batches) {
     (pack.materials[batch.material].shadowless ? out.second : out.first) += batch.index_count / 3;
   }
@@ -101,13 +101,13 @@ TEST(Glass, DoesWhatItsAuthorSays) {
 GltfBuilder pane_with_frame() {
   GltfBuilder gltf = pane(1);
   std::vector<float> positions, uvs;
-  std::vector<std::uint16_t> indices;
-  for (std::uint16_t i = 0; i < 2; ++i) {
+  std::vector<uint16_t> indices;
+  for (uint16_t i = 0; i < 2; ++i) {
     for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}}) {
       positions.insert(positions.end(), {static_cast<float>(x + i), static_cast<float>(y), 0});
       uvs.insert(uvs.end(), {0.5f * static_cast<float>(x + i), static_cast<float>(y)});
     }
-    for (const int corner : {0, 1, 2, 0, 2, 3}) indices.push_back(static_cast<std::uint16_t>(4 * i + corner));
+    for (const int corner : {0, 1, 2, 0, 2, 3}) indices.push_back(static_cast<uint16_t>(4 * i + corner));
   }
   gltf.json["meshes"][0]["primitives"][0] = {
       {"attributes", {{"POSITION", gltf.add_positions(positions)}, {"TEXCOORD_0", gltf.add_floats(uvs, "VEC2", 2)}}},
@@ -206,7 +206,7 @@ TEST(Glass, LeavesItsShellOpen) {
   GltfBuilder gltf = pane(1);
   const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const int positions = gltf.add_positions(corners);
-  const auto primitive = [&](const std::vector<std::uint16_t>& indices) {
+  const auto primitive = [&](const std::vector<uint16_t>& indices) {
     return Json{{"attributes", {{"POSITION", positions}}}, {"indices", gltf.add_indices(indices)}};
   };
   Json sides = primitive({0, 2, 1, 0, 1, 3, 0, 3, 2}), slope = primitive({1, 2, 3});
@@ -218,7 +218,7 @@ TEST(Glass, LeavesItsShellOpen) {
 
 TEST(Glass, WithoutTexturesIsToldByFactorsAlone) {
   GltfBuilder gltf = pane(1);
-  const int view = gltf.add_view(std::vector<std::uint8_t>{1, 2, 3, 4});  // no image, which nobody looks at
+  const int view = gltf.add_view(std::vector<uint8_t>{1, 2, 3, 4});  // no image, which nobody looks at
   gltf.json["images"] = {{{"bufferView", view}, {"mimeType", "image/png"}}};
   gltf.json["textures"] = {{{"source", 0}}};
   material(gltf)["pbrMetallicRoughness"] = {{"metallicFactor", 0.25}, {"metallicRoughnessTexture", {{"index", 0}}}};

@@ -10,13 +10,13 @@
 
 namespace chandelier::baker::test {
 
-std::string base64(const std::vector<std::uint8_t>& bytes) {
+std::string base64(const std::vector<uint8_t>& bytes) {
   static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t bits = 0;
+    for (size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
+    for (size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
   }
   return out;
 }
@@ -24,7 +24,7 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 int GltfBuilder::add_positions(const std::vector<float>& xyz) {
   const int accessor = add_floats(xyz, "VEC3", 3);
   glm::vec3 low(xyz.at(0), xyz.at(1), xyz.at(2)), high = low;
-  for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) {
+  for (size_t i = 0; i + 2 < xyz.size(); i += 3) {
     const glm::vec3 p(xyz[i], xyz[i + 1], xyz[i + 2]);
     low = glm::min(low, p);
     high = glm::max(high, p);

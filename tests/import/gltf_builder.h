@@ -23,8 +23,8 @@ constexpr int byte_type = 5120, unsigned_byte_type = 5121, short_type = 5122, un
 
 struct GltfBuilder {
   Json json = {{"asset", {{"version", "2.0"}}}};
-  std::vector<std::uint8_t> bytes;  // the buffer
-  std::size_t fallback_bytes = 0;   // of a second one, without data: that of views that are compressed
+  std::vector<uint8_t> bytes;  // the buffer
+  size_t fallback_bytes = 0;   // of a second one, without data: that of views that are compressed
 
   /// Appends data, aligned to 4 bytes, as a buffer view; returns its number.
   template <typename T>
@@ -32,26 +32,26 @@ struct GltfBuilder {
     bytes.resize((bytes.size() + 3) / 4 * 4);
     Json view = {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", data.size() * sizeof(T)}};
     if (byte_stride) view["byteStride"] = byte_stride;
-    const auto* from = reinterpret_cast<const std::uint8_t*>(data.data());
+    const auto* from = reinterpret_cast<const uint8_t*>(data.data());
     bytes.insert(bytes.end(), from, from + data.size() * sizeof(T));
     return append("bufferViews", view);
   }
 
   /// An accessor over a view of its own.
   template <typename T>
-  int add_accessor(const std::vector<T>& data, int component_type, const char* type, std::size_t count,
+  int add_accessor(const std::vector<T>& data, int component_type, const char* type, size_t count,
                    bool normalized = false) {
     Json accessor = {
         {"bufferView", add_view(data)}, {"componentType", component_type}, {"type", type}, {"count", count}};
     if (normalized) accessor["normalized"] = true;
     return append("accessors", accessor);
   }
-  int add_floats(const std::vector<float>& data, const char* type, std::size_t components) {
+  int add_floats(const std::vector<float>& data, const char* type, size_t components) {
     return add_accessor(data, float_type, type, data.size() / components);
   }
   /// With the bounds that glTF asks for, where they are numbers.
   int add_positions(const std::vector<float>& xyz);
-  int add_indices(const std::vector<std::uint16_t>& indices) {
+  int add_indices(const std::vector<uint16_t>& indices) {
     return add_accessor(indices, unsigned_short_type, "SCALAR", indices.size());
   }
 
@@ -79,7 +79,7 @@ GltfBuilder one_triangle();
 /// A folder that this test process removes when it ends.
 std::filesystem::path scratch_folder();
 void write_bytes(const std::filesystem::path& path, const std::string& bytes);
-std::string base64(const std::vector<std::uint8_t>& bytes);
+std::string base64(const std::vector<uint8_t>& bytes);
 
 /// Bakes without progress; the report and the warnings go unread.
 pack::Contents bake_scene(Scene&& scene, const BakeSettings& settings);

@@ -17,23 +17,23 @@
 namespace chandelier::baker::test {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = std::vector<uint8_t>;
 
 /// Texels of one grey each, opaque.
-Texels grey(std::uint32_t width, std::uint32_t height, const Bytes& values) {
+Texels grey(uint32_t width, uint32_t height, const Bytes& values) {
   Texels out{width, height, Bytes(4 * values.size(), 255)};
-  for (std::size_t i = 0; i < values.size(); ++i) std::fill_n(out.rgba.begin() + 4 * i, 3, values[i]);
+  for (size_t i = 0; i < values.size(); ++i) std::fill_n(out.rgba.begin() + 4 * i, 3, values[i]);
   return out;
 }
 
-Bytes channel(const Bytes& rgba, std::size_t c) {
+Bytes channel(const Bytes& rgba, size_t c) {
   Bytes out;
-  for (std::size_t i = c; i < rgba.size(); i += 4) out.push_back(rgba[i]);
+  for (size_t i = c; i < rgba.size(); i += 4) out.push_back(rgba[i]);
   return out;
 }
 
 /// One channel of all levels, from the largest on.
-Bytes channel(const std::vector<Texels>& levels, std::size_t c) {
+Bytes channel(const std::vector<Texels>& levels, size_t c) {
   Bytes out;
   for (const Texels& level : levels) {
     const Bytes values = channel(level.rgba, c);
@@ -43,14 +43,14 @@ Bytes channel(const std::vector<Texels>& levels, std::size_t c) {
 }
 
 /// Red noise with alpha in blotches, the same on every run.
-Texels blotches(std::uint32_t width, std::uint32_t height) {
+Texels blotches(uint32_t width, uint32_t height) {
   std::mt19937 random(11);
-  Texels out{width, height, Bytes(std::size_t{4} * width * height)};
-  for (std::uint32_t i = 0; i < width * height; ++i) {
+  Texels out{width, height, Bytes(size_t{4} * width * height)};
+  for (uint32_t i = 0; i < width * height; ++i) {
     const double x = i % width, y = i / width;
     const double alpha = 100 + 90 * std::sin(x * 0.37) * std::sin(y * 0.23 + 1) + static_cast<double>(random() % 64);
-    out.rgba[4 * i] = static_cast<std::uint8_t>(random());
-    out.rgba[4 * i + 3] = static_cast<std::uint8_t>(std::clamp(alpha, 0.0, 255.0));
+    out.rgba[4 * i] = static_cast<uint8_t>(random());
+    out.rgba[4 * i + 3] = static_cast<uint8_t>(std::clamp(alpha, 0.0, 255.0));
   }
   return out;
 }
@@ -69,7 +69,7 @@ TEST(Mips, AverageAlphaPlainlyInColour) {
 
 TEST(Mips, KeepEveryColourThatIsTheSameAllOver) {
   for (int value = 0; value < 256; ++value) {
-    const auto v = static_cast<std::uint8_t>(value);
+    const auto v = static_cast<uint8_t>(value);
     EXPECT_EQ(channel(mip_chain(grey(2, 2, {v, v, v, v}), ImageUse::color), 0), (Bytes{v, v, v, v, v}));
   }
 }
@@ -159,9 +159,9 @@ TEST(Coverage, KeepsEqualAlphasEqual) {
 }
 
 /// A block of BC4, as Khronos Data Format 1.3 §20.1 has it.
-std::array<int, 16> decode_bc4(const std::uint8_t* block) {
+std::array<int, 16> decode_bc4(const uint8_t* block) {
   const int a = block[0], b = block[1];
-  std::uint64_t bits = 0;
+  uint64_t bits = 0;
   for (int i = 7; i >= 2; --i) bits = bits << 8 | block[i];
   std::array<int, 16> out{};
   for (int i = 0; i < 16; ++i, bits >>= 3) {
@@ -174,20 +174,20 @@ std::array<int, 16> decode_bc4(const std::uint8_t* block) {
 }
 
 /// RMS error over the channels from `first` to `end` that are inside the image.
-double rms_error(const Texels& image, const Bytes& decoded, std::size_t first, std::size_t end) {
+double rms_error(const Texels& image, const Bytes& decoded, size_t first, size_t end) {
   double sum = 0;
-  for (std::size_t i = 0; i < image.rgba.size(); ++i) {
+  for (size_t i = 0; i < image.rgba.size(); ++i) {
     if (i % 4 >= first && i % 4 < end) sum += std::pow(static_cast<double>(image.rgba[i]) - decoded[i], 2);
   }
   return std::sqrt(sum / (static_cast<double>(image.rgba.size() / 4) * static_cast<double>(end - first)));
 }
 
-Texels gradient(std::uint32_t width, std::uint32_t height) {
+Texels gradient(uint32_t width, uint32_t height) {
   Texels out{width, height, {}};
-  for (std::uint32_t y = 0; y < height; ++y) {
-    for (std::uint32_t x = 0; x < width; ++x) {
-      const auto u = static_cast<std::uint8_t>(255 * x / width), v = static_cast<std::uint8_t>(255 * y / height);
-      out.rgba.insert(out.rgba.end(), {u, u, static_cast<std::uint8_t>(255 - u), v});
+  for (uint32_t y = 0; y < height; ++y) {
+    for (uint32_t x = 0; x < width; ++x) {
+      const auto u = static_cast<uint8_t>(255 * x / width), v = static_cast<uint8_t>(255 * y / height);
+      out.rgba.insert(out.rgba.end(), {u, u, static_cast<uint8_t>(255 - u), v});
     }
   }
   return out;
@@ -216,11 +216,11 @@ TEST(BlockCompression, KeepsTwoChannelsOfANormalMap) {
   const Texels image = gradient(8, 8);
   const Blocks bc5 = compress_blocks(image, BlockFormat::bc5);
   ASSERT_EQ(bc5.bytes.size(), 16u * 4);
-  for (std::size_t block = 0; block < 4; ++block) {
-    for (std::size_t half = 0; half < 2; ++half) {
+  for (size_t block = 0; block < 4; ++block) {
+    for (size_t half = 0; half < 2; ++half) {
       const std::array<int, 16> values = decode_bc4(&bc5.bytes[16 * block + 8 * half]);
-      for (std::size_t i = 0; i < 16; ++i) {
-        const std::size_t x = block % 2 * 4 + i % 4, y = block / 2 * 4 + i / 4;
+      for (size_t i = 0; i < 16; ++i) {
+        const size_t x = block % 2 * 4 + i % 4, y = block / 2 * 4 + i / 4;
         EXPECT_NEAR(values[i], image.rgba[4 * (y * 8 + x) + half], 8);  // a seventh of the block's range, halved
       }
     }
@@ -229,9 +229,9 @@ TEST(BlockCompression, KeepsTwoChannelsOfANormalMap) {
 
 TEST(BlockCompression, FitsBlocksOverTheEdgeToWhatIsInside) {
   for (const auto& [width, height] : {std::pair{1u, 1u}, {2u, 2u}, {3u, 1u}, {5u, 3u}, {1u, 7u}, {9u, 4u}}) {
-    Texels image{width, height, Bytes(std::size_t{4} * width * height)};
-    for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = i % 4 == 3 ? 200 : i % 4 == 0 ? 250 : 20;
-    const std::size_t blocks = std::size_t{(width + 3) / 4} * ((height + 3) / 4);
+    Texels image{width, height, Bytes(size_t{4} * width * height)};
+    for (size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = i % 4 == 3 ? 200 : i % 4 == 0 ? 250 : 20;
+    const size_t blocks = size_t{(width + 3) / 4} * ((height + 3) / 4);
     const Blocks bc3 = compress_blocks(image, BlockFormat::bc3);
     ASSERT_EQ(bc3.bytes.size(), 16 * blocks);
     EXPECT_LT(rms_error(image, decoded(image, bc3, squish::kDxt5), 0, 4), 3.0) << width << "x" << height;

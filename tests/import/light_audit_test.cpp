@@ -44,8 +44,8 @@ struct Stage {
   void add_box(const glm::vec3& low, const glm::vec3& high) { add_box(low, high, Look{}); }
 
   void add_box(const glm::vec3& low, const glm::vec3& high, const Look& look) {
-    const auto first_vertex = static_cast<std::uint32_t>(pack.positions.size());
-    const auto first_index = static_cast<std::uint32_t>(pack.indices.size());
+    const auto first_vertex = static_cast<uint32_t>(pack.positions.size());
+    const auto first_index = static_cast<uint32_t>(pack.indices.size());
     for (int i = 0; i < 8; ++i) {
       const glm::vec3 corner(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
       pack.positions.push_back({corner * look.mirror});  // placed by a matrix that mirrors back
@@ -55,17 +55,17 @@ struct Stage {
     for (const auto& face : std::span(faces).first(look.open_top ? 5 : 6)) {
       for (int corner : {0, 1, 2, 0, 2, 3}) {
         const int at = look.inward ? 3 - corner : corner;
-        pack.indices.push_back({first_vertex + static_cast<std::uint32_t>(face[at])});
+        pack.indices.push_back({first_vertex + static_cast<uint32_t>(face[at])});
       }
     }
     pack::Batch batch;
     batch.first_index = first_index;
-    batch.index_count = static_cast<std::uint32_t>(pack.indices.size()) - first_index;
+    batch.index_count = static_cast<uint32_t>(pack.indices.size()) - first_index;
     batch.material = (look.masked ? 2u : 0u) + (look.double_sided ? 1u : 0u);
     batch.closed = look.closed;
     pack::Instance instance;
     for (int axis = 0; axis < 3; ++axis) instance.world_from_local[axis][axis] = look.mirror[axis];
-    const auto number = static_cast<std::uint32_t>(pack.batches.size());
+    const auto number = static_cast<uint32_t>(pack.batches.size());
     pack.batches.push_back(batch);
     pack.instances.push_back(instance);
     pack.batch_instances.push_back({low, number, high, number});
@@ -203,7 +203,7 @@ TEST(LightAudit, LeavesALightInABulbThatThrowsNoShadowInPeace) {
     stage.add_light({3, 3, 0});
     if (by_material) {
       stage.pack.materials.push_back({.shadowless = 1});
-      stage.pack.batches.back().material = static_cast<std::uint32_t>(stage.pack.materials.size() - 1);
+      stage.pack.batches.back().material = static_cast<uint32_t>(stage.pack.materials.size() - 1);
     } else {
       stage.pack.instances.back().shadowless = 1;
     }
@@ -259,7 +259,7 @@ TEST(LightAudit, LeavesLightsThatOnlySeemInsideInPeace) {
         stage.add_box({0.5f, 0, 0.5f}, {1, 4, 1});
       },
   };
-  for (std::size_t i = 0; i < surroundings.size(); ++i) {
+  for (size_t i = 0; i < surroundings.size(); ++i) {
     SCOPED_TRACE(i);
     Stage stage;
     stage.add_room();
@@ -325,7 +325,7 @@ TEST(LightRays, AgreeWithPointsStrewnOverTrianglesInAndOutOfReach) {
     Stage stage;
     for (int corner = 0; corner < 3; ++corner) {
       stage.pack.positions.push_back({{place(random), place(random), place(random)}});
-      stage.pack.indices.push_back({static_cast<std::uint32_t>(corner)});
+      stage.pack.indices.push_back({static_cast<uint32_t>(corner)});
     }
     stage.pack.batches.push_back({.index_count = 3});
     pack::Instance unmoved;

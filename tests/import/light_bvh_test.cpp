@@ -98,11 +98,11 @@ TEST(LightBounds, RoundOutwardsAndStayFinite) {
 }
 
 /// Lights as a scene may have them: lamps in rooms along streets, a few floodlights, some at the same place, a sun.
-std::vector<pack::Light> many_lights(std::size_t count, std::uint32_t seed) {
+std::vector<pack::Light> many_lights(size_t count, uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> place(-100, 100), range(1, 6), one(0, 1);
   std::vector<pack::Light> lights(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (size_t i = 0; i < count; ++i) {
     pack::Light& light = lights[i];
     if (i % 50 == 49) light.type = pack::LightType::directional;
     light.position_ws = {place(random), 0.1f * place(random), place(random)};
@@ -119,10 +119,9 @@ bool holds(const glm::vec3& center, float radius, const glm::vec3& point) {
 }
 
 /// As a shader walks it. `visited` counts nodes.
-std::vector<std::uint32_t> lights_at(const std::vector<pack::LightBvhNode>& nodes, const glm::vec3& point,
-                                     std::size_t& visited) {
-  std::vector<std::uint32_t> found;
-  for (std::size_t i = 0; i < nodes.size(); ++visited) {
+std::vector<uint32_t> lights_at(const std::vector<pack::LightBvhNode>& nodes, const glm::vec3& point, size_t& visited) {
+  std::vector<uint32_t> found;
+  for (size_t i = 0; i < nodes.size(); ++visited) {
     const bool hit = holds(nodes[i].center_ws, nodes[i].radius_m, point);
     if (hit && nodes[i].light != pack::none) found.push_back(nodes[i].light);
     i = hit ? i + 1 : nodes[i].miss;
@@ -131,9 +130,9 @@ std::vector<std::uint32_t> lights_at(const std::vector<pack::LightBvhNode>& node
   return found;
 }
 
-std::vector<std::uint32_t> lights_by_looking_at_all(const std::vector<pack::Light>& lights, const glm::vec3& point) {
-  std::vector<std::uint32_t> found;
-  for (std::uint32_t i = 0; i < lights.size(); ++i) {
+std::vector<uint32_t> lights_by_looking_at_all(const std::vector<pack::Light>& lights, const glm::vec3& point) {
+  std::vector<uint32_t> found;
+  for (uint32_t i = 0; i < lights.size(); ++i) {
     if (lights[i].type == pack::LightType::directional) continue;
     if (holds(lights[i].bounds_center_ws, lights[i].bounds_radius_m, point)) found.push_back(i);
   }
@@ -141,13 +140,13 @@ std::vector<std::uint32_t> lights_by_looking_at_all(const std::vector<pack::Ligh
 }
 
 TEST(LightBvh, FindsExactlyTheLightsThatReachAPoint) {
-  for (const std::size_t count : {1u, 2u, 3u, 10u, 471u, 5000u}) {
+  for (const size_t count : {1u, 2u, 3u, 10u, 471u, 5000u}) {
     SCOPED_TRACE(count);
-    const std::vector<pack::Light> lights = many_lights(count, static_cast<std::uint32_t>(count));
+    const std::vector<pack::Light> lights = many_lights(count, static_cast<uint32_t>(count));
     const std::vector<pack::LightBvhNode> nodes = build_light_bvh(lights);
     std::mt19937 random(7);
     std::uniform_real_distribution<float> place(-110, 110);
-    std::size_t visited = 0, found = 0;
+    size_t visited = 0, found = 0;
     constexpr int point_count = 2000;
     for (int i = 0; i < point_count; ++i) {
       const glm::vec3 point = {place(random), 0.1f * place(random), place(random)};
@@ -162,13 +161,13 @@ TEST(LightBvh, FindsExactlyTheLightsThatReachAPoint) {
 }
 
 TEST(LightBvh, KeepsThePromisesOfThePack) {
-  for (const std::size_t count : {0u, 1u, 2u, 471u, 20000u}) {
+  for (const size_t count : {0u, 1u, 2u, 471u, 20000u}) {
     pack::Contents pack;
     pack.lights = many_lights(count, 3);
     for (pack::Light& light : pack.lights) light.direction_ws = {0, 0, -1};
     pack.bake_info.batch_triangles = 100;
     pack.light_bvh = build_light_bvh(pack.lights);
-    const std::size_t placed = count - count / 50;
+    const size_t placed = count - count / 50;
     EXPECT_EQ(pack.light_bvh.size(), placed ? 2 * placed - 1 : 0);
     EXPECT_EQ(pack::check(pack::view_of(pack)), "");  // links, and each light in one leaf
   }
@@ -177,19 +176,19 @@ TEST(LightBvh, KeepsThePromisesOfThePack) {
 TEST(LightBvh, HoldsManyLightsInOnePlaceAndInARow) {
   std::vector<pack::Light> lights(3000);
   float x = 1e-30f;  // each three times as far as the one before, again and again: the most uneven splits
-  for (std::size_t i = 0; i < lights.size(); ++i, x = x < 1e30f ? x * 3 : 1e-30f) {
+  for (size_t i = 0; i < lights.size(); ++i, x = x < 1e30f ? x * 3 : 1e-30f) {
     lights[i].bounds_center_ws = i % 3 ? glm::vec3(x, 0, 0) : glm::vec3(0);
     lights[i].bounds_radius_m = i % 2 ? 0.0f : 1.0f;
   }
   const std::vector<pack::LightBvhNode> nodes = build_light_bvh(lights);
-  std::size_t visited = 0;
+  size_t visited = 0;
   EXPECT_EQ(lights_at(nodes, glm::vec3(0), visited), lights_by_looking_at_all(lights, glm::vec3(0)));
 }
 
 TEST(LightBvh, IsTheSameOnAnyNumberOfThreads) {
   const std::vector<pack::Light> lights = many_lights(20000, 11);
   std::vector<pack::LightBvhNode> first;
-  for (const std::size_t threads : {1u, 2u, 7u}) {
+  for (const size_t threads : {1u, 2u, 7u}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     const std::vector<pack::LightBvhNode> nodes = build_light_bvh(lights);
     if (first.empty()) first = nodes;

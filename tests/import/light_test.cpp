@@ -137,9 +137,9 @@ TEST(Light, OfGroupsOfTheSameNameHasTheirNumber) {
   pack::Contents pack;
   Strings strings(pack.strings);
   make_lights(scene, 0.05f, strings, pack);
-  std::vector<std::uint32_t> groups;
+  std::vector<uint32_t> groups;
   for (const pack::Light& light : pack.lights) groups.push_back(light.group);
-  EXPECT_EQ(groups, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 1}));
+  EXPECT_EQ(groups, (std::vector<uint32_t>{0, 1, 2, 0, 1, 1}));
 }
 
 TEST(Light, LeavesItsGroupWhereItsNodeSaysSo) {

@@ -47,8 +47,8 @@ std::string glb_of(const GltfBuilder& gltf) {
   std::string text = json.dump(), bin(gltf.bytes.begin(), gltf.bytes.end());
   text.resize((text.size() + 3) / 4 * 4, ' ');
   bin.resize((bin.size() + 3) / 4 * 4, '\0');
-  const auto u32 = [](std::size_t value) {
-    const auto v = static_cast<std::uint32_t>(value);
+  const auto u32 = [](size_t value) {
+    const auto v = static_cast<uint32_t>(value);
     return std::string(reinterpret_cast<const char*>(&v), 4);
   };
   return "glTF" + u32(2) + u32(12 + 8 + text.size() + 8 + bin.size()) + u32(text.size()) + "JSON" + text +
@@ -67,7 +67,7 @@ TEST(Glb, IsReadLikeAGltf) {
 TEST(Glb, IsRefusedWhereverItIsCut) {
   const std::string whole = glb_of(one_triangle());
   const std::filesystem::path path = scratch_folder() / "cut.glb";
-  for (std::size_t size = 0; size < whole.size(); ++size) {
+  for (size_t size = 0; size < whole.size(); ++size) {
     write_bytes(path, whole.substr(0, size));
     EXPECT_NE(error_of(path), "") << size << " of " << whole.size() << " bytes";
   }
@@ -76,7 +76,7 @@ TEST(Glb, IsRefusedWhereverItIsCut) {
 TEST(Glb, IsRefusedOrReadWhateverByteIsAltered) {
   const std::string whole = glb_of(one_triangle());
   const std::filesystem::path path = scratch_folder() / "altered.glb";
-  for (std::size_t i = 0; i < whole.size(); ++i) {
+  for (size_t i = 0; i < whole.size(); ++i) {
     for (const char flip : {'\x01', '\x80', '\xFF'}) {
       std::string altered = whole;
       altered[i] = static_cast<char>(altered[i] ^ flip);

@@ -131,7 +131,7 @@ GltfBuilder skinned_triangle() {
       {{"name", "leg"}, {"joints", {1, 2}}, {"inverseBindMatrices", gltf.add_floats(matrices, "MAT4", 16)}}};
   Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["JOINTS_0"] =
-      gltf.add_accessor<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 9, 0, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
+      gltf.add_accessor<uint8_t>({0, 1, 0, 0, 1, 0, 0, 9, 0, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
   attributes["WEIGHTS_0"] = gltf.add_floats({0.25f, 0.75f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
   const int times = gltf.add_floats({0.5f, 2}, "SCALAR", 1);
   gltf.json["accessors"][times]["min"] = {0.5};
@@ -253,11 +253,11 @@ TEST(Skin, KeepsTrianglesThatAreTogetherOnlyInTheBindPose) {
   primitive.erase("indices");
   const std::vector<float> twins = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0};
   primitive["attributes"]["POSITION"] = gltf.add_positions(twins);
-  std::vector<std::uint8_t> joints(24, 0);
-  for (std::size_t i = 12; i < 24; i += 4) joints[i] = 1;
-  primitive["attributes"]["JOINTS_0"] = gltf.add_accessor<std::uint8_t>(joints, unsigned_byte_type, "VEC4", 6);
+  std::vector<uint8_t> joints(24, 0);
+  for (size_t i = 12; i < 24; i += 4) joints[i] = 1;
+  primitive["attributes"]["JOINTS_0"] = gltf.add_accessor<uint8_t>(joints, unsigned_byte_type, "VEC4", 6);
   std::vector<float> weights(24, 0);
-  for (std::size_t i = 0; i < 24; i += 4) weights[i] = 1;
+  for (size_t i = 0; i < 24; i += 4) weights[i] = 1;
   primitive["attributes"]["WEIGHTS_0"] = gltf.add_floats(weights, "VEC4", 4);
   EXPECT_EQ(gltf.bake().indices.size(), 6u);
 }
@@ -266,13 +266,13 @@ TEST(Skin, QuantizesItsWeights) {
   const Scene scene = skinned_triangle().import();
   const std::vector<SkinVertex>& vertices = scene.meshes.at(0).primitives.at(0).skin_vertices;
   ASSERT_EQ(vertices.size(), 3u);
-  EXPECT_EQ(vertices[0].weights, (std::array<std::uint16_t, 4>{16384, 49151, 0, 0}));
-  EXPECT_EQ(vertices[0].joints, (std::array<std::uint16_t, 4>{0, 1, 0, 0}));
-  EXPECT_EQ(vertices[1].joints, (std::array<std::uint16_t, 4>{1, 0, 0, 0}));  // 9 has no weight
+  EXPECT_EQ(vertices[0].weights, (std::array<uint16_t, 4>{16384, 49151, 0, 0}));
+  EXPECT_EQ(vertices[0].joints, (std::array<uint16_t, 4>{0, 1, 0, 0}));
+  EXPECT_EQ(vertices[1].joints, (std::array<uint16_t, 4>{1, 0, 0, 0}));  // 9 has no weight
 }
 
 TEST(Skin, WeightsSumToTheWholeAndAreOffByLessThanOne) {
-  std::uint32_t seed = 1;
+  uint32_t seed = 1;
   for (int round = 0; round < 10000; ++round) {
     std::array<float, 4> weights{};
     double sum = 0;
@@ -283,9 +283,9 @@ TEST(Skin, WeightsSumToTheWholeAndAreOffByLessThanOne) {
     }
     const auto whole = quantize_weights(weights);
     EXPECT_EQ(whole[0] + whole[1] + whole[2] + whole[3], 65535);
-    for (std::size_t i = 0; sum > 0 && i < 4; ++i) EXPECT_LT(std::abs(whole[i] - weights[i] / sum * 65535), 1);
+    for (size_t i = 0; sum > 0 && i < 4; ++i) EXPECT_LT(std::abs(whole[i] - weights[i] / sum * 65535), 1);
   }
-  EXPECT_EQ(quantize_weights({0, 0, 0, 0}), (std::array<std::uint16_t, 4>{65535, 0, 0, 0}));
+  EXPECT_EQ(quantize_weights({0, 0, 0, 0}), (std::array<uint16_t, 4>{65535, 0, 0, 0}));
 }
 
 TEST(Skin, IsIgnoredWithAWarningWhereVerticesHaveNoJoints) {

@@ -20,12 +20,12 @@ GltfBuilder soup_with_lamps(int triangles, int lamps) {
   std::uniform_real_distribution<float> place(-10, 10), size(-1, 1);
   GltfBuilder gltf;
   std::vector<float> xyz;
-  std::vector<std::uint16_t> indices;
+  std::vector<uint16_t> indices;
   for (int i = 0; i < triangles; ++i) {
     const glm::vec3 at(place(random), place(random), place(random));
     for (int corner = 0; corner < 3; ++corner) {
       for (int axis = 0; axis < 3; ++axis) xyz.push_back(at[axis] + size(random));
-      indices.push_back(static_cast<std::uint16_t>(indices.size()));
+      indices.push_back(static_cast<uint16_t>(indices.size()));
     }
   }
   gltf.add_mesh({{"attributes", {{"POSITION", gltf.add_positions(xyz)}}}, {"indices", gltf.add_indices(indices)}});
@@ -58,9 +58,9 @@ double nearest_of_all(const pack::Contents& pack, const glm::dvec3& p, double mo
   double nearest = most_m;
   for (const pack::BatchInstance& draw : pack.batch_instances) {
     const pack::Batch& batch = pack.batches[draw.batch];
-    for (std::uint32_t i = 0; i < batch.index_count; i += 3) {
+    for (uint32_t i = 0; i < batch.index_count; i += 3) {
       glm::dvec3 corners[3];
-      for (std::uint32_t k = 0; k < 3; ++k) {
+      for (uint32_t k = 0; k < 3; ++k) {
         const glm::dvec4 local(glm::dvec3(pack.positions[pack.indices[batch.first_index + i + k].vertex].position_ls),
                                1);
         for (int row = 0; row < 3; ++row)
@@ -88,7 +88,7 @@ TEST(NearestCaster, IsTheNearestOfAllTriangles) {
 TEST(NearestCaster, LeavesOutWhatThrowsNoShadow) {
   pack::Contents pack = soup_with_lamps(50, 1).bake();
   const glm::dvec3 at(pack.lights[0].position_ws);
-  const std::vector<std::uint32_t> moving = moving_batch_instances(pack);
+  const std::vector<uint32_t> moving = moving_batch_instances(pack);
   EXPECT_LT(nearest_caster_m(pack, moving, at, 100), 100);
   for (pack::Instance& instance : pack.instances) instance.shadowless = 1;
   EXPECT_EQ(nearest_caster_m(pack, moving, at, 100), 100);

@@ -56,9 +56,9 @@ TEST(Node, SharesAMeshAmongInstances) {
   EXPECT_EQ(text_of(pack, pack.instances[0].name), "triangle");
 }
 
-glm::vec3 world_vertex(const pack::Contents& pack, const pack::BatchInstance& draw, std::uint32_t corner) {
+glm::vec3 world_vertex(const pack::Contents& pack, const pack::BatchInstance& draw, uint32_t corner) {
   const auto& rows = pack.instances[draw.instance].world_from_local;
-  const std::uint32_t vertex = pack.indices[pack.batches[draw.batch].first_index + corner].vertex;
+  const uint32_t vertex = pack.indices[pack.batches[draw.batch].first_index + corner].vertex;
   const glm::vec4 p(pack.positions[vertex].position_ls, 1);
   return {glm::dot(rows[0], p), glm::dot(rows[1], p), glm::dot(rows[2], p)};
 }

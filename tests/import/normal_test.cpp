@@ -13,16 +13,16 @@ namespace chandelier::baker::test {
 namespace {
 
 /// Each triangle with vertices of its own.
-Primitive soup(const std::vector<glm::vec3>& places, const std::vector<std::uint32_t>& corners) {
+Primitive soup(const std::vector<glm::vec3>& places, const std::vector<uint32_t>& corners) {
   Primitive primitive;
-  for (const std::uint32_t corner : corners) {
-    primitive.indices.push_back(static_cast<std::uint32_t>(primitive.vertices.size()));
+  for (const uint32_t corner : corners) {
+    primitive.indices.push_back(static_cast<uint32_t>(primitive.vertices.size()));
     primitive.vertices.push_back({.position_ls = places[corner]});
   }
   return primitive;
 }
 
-glm::vec3 normal_at(const Primitive& primitive, std::size_t corner) {
+glm::vec3 normal_at(const Primitive& primitive, size_t corner) {
   return primitive.vertices[primitive.indices[corner]].normal_ls;
 }
 
@@ -36,7 +36,7 @@ Primitive bent(float angle_rad) {
 TEST(Normals, AreFlatByDefault) {
   Primitive primitive = bent(0.1f);
   make_normals(primitive, 0);
-  for (std::size_t i = 0; i < 12; ++i) {
+  for (size_t i = 0; i < 12; ++i) {
     const glm::vec3 expected = i < 6 ? glm::vec3(0, 1, 0) : glm::vec3(std::sin(0.1f), std::cos(0.1f), 0);
     EXPECT_LT(glm::distance(normal_at(primitive, i), expected), 1e-6f) << i;
   }
@@ -49,7 +49,7 @@ TEST(Normals, AreSmoothAcrossAnEdgeUpToTheAngle) {
       make_normals(primitive, smooth);
       // On the shared edge the two sides weigh the same: each has 90 degrees at either end of it.
       const bool smoothed = angle < smooth;
-      for (const std::size_t corner : {2u, 3u, 5u, 6u, 7u, 10u}) {
+      for (const size_t corner : {2u, 3u, 5u, 6u, 7u, 10u}) {
         const float turned = smoothed ? angle / 2 : corner < 6 ? 0 : angle;
         EXPECT_LT(glm::distance(normal_at(primitive, corner), {std::sin(turned), std::cos(turned), 0}), 1e-6f)
             << angle << " " << smooth << " " << corner;
@@ -69,10 +69,10 @@ TEST(Normals, OfAFineSphereAreItsRadii) {
       places.push_back(glm::dvec3(radius * std::cos(phi), std::cos(theta), radius * std::sin(phi)));
     }
   }
-  std::vector<std::uint32_t> corners;
-  for (std::uint32_t r = 0; r < rings; ++r) {
-    for (std::uint32_t s = 0; s < sides; ++s) {
-      const std::uint32_t a = r * sides + s, b = r * sides + (s + 1) % sides, c = a + sides, d = b + sides;
+  std::vector<uint32_t> corners;
+  for (uint32_t r = 0; r < rings; ++r) {
+    for (uint32_t s = 0; s < sides; ++s) {
+      const uint32_t a = r * sides + s, b = r * sides + (s + 1) % sides, c = a + sides, d = b + sides;
       if (r > 0) corners.insert(corners.end(), {a, b, c});
       if (r + 1 < rings) corners.insert(corners.end(), {b, d, c});
     }
@@ -80,7 +80,7 @@ TEST(Normals, OfAFineSphereAreItsRadii) {
   Primitive primitive = soup(places, corners);
   make_normals(primitive, 1.0f);
   float worst = 1;
-  for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
+  for (size_t i = 0; i < primitive.indices.size(); ++i) {
     const glm::vec3 place = primitive.vertices[primitive.indices[i]].position_ls;
     worst = std::min(worst, glm::dot(normal_at(primitive, i), place));
   }
@@ -91,16 +91,16 @@ TEST(Normals, OfAFanSmoothInOneSector) {
   // A cone of many sides: quadratic work at its tip would not end.
   constexpr int sides = 100000;
   std::vector<glm::vec3> places = {{0, 0.1f, 0}};
-  std::vector<std::uint32_t> corners;
+  std::vector<uint32_t> corners;
   for (int i = 0; i < sides; ++i) {
     const double angle = 2 * M_PI * i / sides;
     places.push_back({std::cos(angle), 0, -std::sin(angle)});
-    const auto a = static_cast<std::uint32_t>(i);
+    const auto a = static_cast<uint32_t>(i);
     corners.insert(corners.end(), {0, a + 1, (a + 1) % sides + 1});
   }
   Primitive primitive = soup(places, corners);
   make_normals(primitive, 0.5f);
-  for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+  for (size_t i = 0; i < primitive.indices.size(); i += 3) {
     ASSERT_LT(glm::distance(normal_at(primitive, i), {0, 1, 0}), 1e-4f);
   }
 }
@@ -114,17 +114,17 @@ TEST(Normals, KeepEachTriangleOfAnyHeapInItsOrder) {
       places.push_back(
           {static_cast<float>(random() % 4), static_cast<float>(random() % 4), static_cast<float>(random() % 4)});
     }
-    std::vector<std::uint32_t> corners;
-    for (int i = 0; i < 3 * 60; ++i) corners.push_back(static_cast<std::uint32_t>(random() % places.size()));
+    std::vector<uint32_t> corners;
+    for (int i = 0; i < 3 * 60; ++i) corners.push_back(static_cast<uint32_t>(random() % places.size()));
     Primitive primitive = soup(places, corners);
     primitive.skin_vertices.resize(primitive.vertices.size());
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      primitive.skin_vertices[i].joints[0] = static_cast<std::uint16_t>(corners[i]);
+    for (size_t i = 0; i < corners.size(); ++i) {
+      primitive.skin_vertices[i].joints[0] = static_cast<uint16_t>(corners[i]);
     }
     make_normals(primitive, static_cast<float>(round % 4) * 0.7f);
     ASSERT_EQ(primitive.indices.size(), corners.size());
     ASSERT_EQ(primitive.skin_vertices.size(), primitive.vertices.size());
-    for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (size_t i = 0; i < corners.size(); ++i) {
       EXPECT_EQ(primitive.vertices[primitive.indices[i]].position_ls, places[corners[i]]);
       EXPECT_EQ(primitive.skin_vertices[primitive.indices[i]].joints[0], corners[i]);
       EXPECT_NEAR(glm::length(normal_at(primitive, i)), 1, 1e-5);

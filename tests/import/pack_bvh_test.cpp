@@ -16,16 +16,16 @@ namespace chandelier::baker::test {
 namespace {
 
 /// A sheet of `side` by `side` squares at a height.
-Primitive sheet(std::uint32_t side, float height) {
+Primitive sheet(uint32_t side, float height) {
   Primitive out;
-  for (std::uint32_t y = 0; y <= side; ++y) {
-    for (std::uint32_t x = 0; x <= side; ++x) {
+  for (uint32_t y = 0; y <= side; ++y) {
+    for (uint32_t x = 0; x <= side; ++x) {
       out.vertices.push_back({.position_ls = {static_cast<float>(x), height, static_cast<float>(y)}});
     }
   }
-  for (std::uint32_t y = 0; y < side; ++y) {
-    for (std::uint32_t x = 0; x < side; ++x) {
-      const std::uint32_t a = y * (side + 1) + x, c = a + side + 1;
+  for (uint32_t y = 0; y < side; ++y) {
+    for (uint32_t x = 0; x < side; ++x) {
+      const uint32_t a = y * (side + 1) + x, c = a + side + 1;
       out.indices.insert(out.indices.end(), {a, c + 1, a + 1, a, c, c + 1});
     }
   }
@@ -33,10 +33,10 @@ Primitive sheet(std::uint32_t side, float height) {
 }
 
 /// A fan of slivers around one vertex.
-Primitive hub(std::uint32_t triangles) {
+Primitive hub(uint32_t triangles) {
   Primitive out;
   out.vertices.push_back({});
-  for (std::uint32_t i = 0; i <= triangles; ++i) {
+  for (uint32_t i = 0; i <= triangles; ++i) {
     const double angle = 2 * M_PI * i / triangles;
     out.vertices.push_back({.position_ls = {100 * std::cos(angle), 100 * std::sin(angle), 0}});
     if (i > 0) out.indices.insert(out.indices.end(), {0, i, i + 1});
@@ -53,7 +53,7 @@ Scene sheets_and_hub() {
   scene.meshes[1].primitives = {hub(3000)};
   for (int i = 0; i < 5; ++i) {
     MeshInstance instance;
-    instance.mesh = static_cast<std::uint32_t>(i) % 2;
+    instance.mesh = static_cast<uint32_t>(i) % 2;
     instance.world_from_local[3] = {50 * i, 7, -20 * i, 1};
     if (i == 4) instance.world_from_local[0].x = -1;
     scene.instances.push_back(instance);
@@ -61,8 +61,8 @@ Scene sheets_and_hub() {
   return scene;
 }
 
-BvhItem triangle_of(const pack::Contents& pack, std::uint32_t triangle) {
-  const auto corner = [&](std::size_t c) { return pack.positions[pack.indices[triangle * 3 + c].vertex].position_ls; };
+BvhItem triangle_of(const pack::Contents& pack, uint32_t triangle) {
+  const auto corner = [&](size_t c) { return pack.positions[pack.indices[triangle * 3 + c].vertex].position_ls; };
   const glm::dvec3 cross =
       glm::cross(glm::dvec3(corner(1)) - glm::dvec3(corner(0)), glm::dvec3(corner(2)) - glm::dvec3(corner(0)));
   return {glm::min(glm::min(corner(0), corner(1)), corner(2)), triangle,
@@ -75,18 +75,18 @@ void expect_hierarchies(const pack::Contents& pack, int queries) {
   const Box world{pack.bake_info.bounds_min_ws, pack.bake_info.bounds_max_ws};
   const std::vector<pack::NodeArea> no_areas(std::max(pack.batch_bvh.size(), pack.instance_bvh.size()));
 
-  std::size_t static_batches = 0;
+  size_t static_batches = 0;
   for (const auto& draw : pack.batch_instances) static_batches += pack.instances[draw.instance].dynamic == 0;
   ASSERT_EQ(pack.batch_bvh_items.size(), static_batches);
-  const auto batch_of = [&](std::uint32_t i) -> BvhItem {
-    const std::uint32_t number = pack.batch_bvh_items[i].batch_instance;
+  const auto batch_of = [&](uint32_t i) -> BvhItem {
+    const uint32_t number = pack.batch_bvh_items[i].batch_instance;
     return {pack.batch_instances[number].bounds_min_ws, number, pack.batch_instances[number].bounds_max_ws, 0};
   };
-  expect_tree(pack.batch_bvh, no_areas, 0, static_cast<std::uint32_t>(pack.batch_bvh.size()), 0, batch_of);
-  EXPECT_TRUE(expect_found(pack.batch_bvh, 0, static_cast<std::uint32_t>(pack.batch_bvh.size()), 0,
-                           static_cast<std::uint32_t>(static_batches), batch_of, random_queries(world, queries, 1)));
+  expect_tree(pack.batch_bvh, no_areas, 0, static_cast<uint32_t>(pack.batch_bvh.size()), 0, batch_of);
+  EXPECT_TRUE(expect_found(pack.batch_bvh, 0, static_cast<uint32_t>(pack.batch_bvh.size()), 0,
+                           static_cast<uint32_t>(static_batches), batch_of, random_queries(world, queries, 1)));
 
-  const auto instance_of = [&](std::uint32_t i) {
+  const auto instance_of = [&](uint32_t i) {
     BvhItem out = {glm::vec3(largest_float), pack.instance_bvh_items[i].instance, glm::vec3(-largest_float), 0};
     for (const auto& draw : pack.batch_instances) {
       if (draw.instance != out.number) continue;
@@ -95,14 +95,14 @@ void expect_hierarchies(const pack::Contents& pack, int queries) {
     }
     return out;
   };
-  expect_tree(pack.instance_bvh, no_areas, 0, static_cast<std::uint32_t>(pack.instance_bvh.size()), 0, instance_of);
+  expect_tree(pack.instance_bvh, no_areas, 0, static_cast<uint32_t>(pack.instance_bvh.size()), 0, instance_of);
 
-  const auto triangle_at = [&](std::uint32_t i) { return triangle_of(pack, pack.triangle_bvh_items[i].triangle); };
-  std::uint32_t first_item = 0;
+  const auto triangle_at = [&](uint32_t i) { return triangle_of(pack, pack.triangle_bvh_items[i].triangle); };
+  uint32_t first_item = 0;
   for (const pack::Mesh& mesh : pack.meshes) {
-    std::uint32_t items = 0;
-    for (std::uint32_t b = 0; b < mesh.batch_count; ++b) items += pack.batches[mesh.first_batch + b].index_count / 3;
-    const std::uint32_t end = mesh.first_node + mesh.node_count;
+    uint32_t items = 0;
+    for (uint32_t b = 0; b < mesh.batch_count; ++b) items += pack.batches[mesh.first_batch + b].index_count / 3;
+    const uint32_t end = mesh.first_node + mesh.node_count;
     expect_tree(pack.triangle_bvh, pack.triangle_bvh_areas, mesh.first_node, end, first_item, triangle_at);
     expect_found(pack.triangle_bvh, mesh.first_node, end, first_item, items, triangle_at,
                  random_queries({mesh.bounds_min_ls, mesh.bounds_max_ls}, queries, 2));
@@ -158,7 +158,7 @@ TEST(PackBvh, IsThereForOneTriangleAndNotForNone) {
 }
 
 TEST(PackBvh, IsTheSameOnAnyNumberOfThreads) {
-  const auto bake_with = [&](std::size_t threads) {
+  const auto bake_with = [&](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     Scene scene = sheets_and_hub();
     scene.meshes[0].primitives.push_back(sheet(250, 9));  // enough for several threads

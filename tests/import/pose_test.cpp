@@ -17,7 +17,7 @@ Json& primitive(GltfBuilder& gltf) {
   return gltf.json["meshes"][0]["primitives"][0];
 }
 
-const Primitive& first(const Scene& scene, std::size_t mesh = 0) {
+const Primitive& first(const Scene& scene, size_t mesh = 0) {
   return scene.meshes.at(mesh).primitives.at(0);
 }
 
@@ -36,7 +36,7 @@ void expect_near(const glm::vec3& found, const glm::vec3& expected, float tolera
 
 void expect_positions(const Primitive& primitive, const std::vector<glm::vec3>& expected) {
   ASSERT_EQ(primitive.vertices.size(), expected.size());
-  for (std::size_t i = 0; i < expected.size(); ++i) expect_near(primitive.vertices[i].position_ls, expected[i]);
+  for (size_t i = 0; i < expected.size(); ++i) expect_near(primitive.vertices[i].position_ls, expected[i]);
 }
 
 TEST(Morph, FollowsTheMeshsWeights) {
@@ -82,7 +82,7 @@ TEST(Morph, NodesShareAMeshWhereTheirWeightsAreTheSame) {
 /// The second corner alone, in an accessor that has nothing but sparse values.
 TEST(Morph, ReadsSparseTargets) {
   GltfBuilder gltf = morphed_triangle();
-  const int indices = gltf.add_view<std::uint16_t>({1}), values = gltf.add_view<float>({0, 3, 0});
+  const int indices = gltf.add_view<uint16_t>({1}), values = gltf.add_view<float>({0, 3, 0});
   const int sparse =
       gltf.append("accessors", {{"componentType", float_type},
                                 {"type", "VEC3"},
@@ -101,7 +101,7 @@ TEST(Morph, ReadsSparseTargets) {
 TEST(Morph, ReadsQuantizedTargets) {
   GltfBuilder gltf = morphed_triangle();
   gltf.json["extensionsUsed"] = gltf.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-  const int view = gltf.add_view<std::int16_t>({0, 0, 0, 0, 32767, 0, -16384, 0, 0, 0, 0, 0}, 8);
+  const int view = gltf.add_view<int16_t>({0, 0, 0, 0, 32767, 0, -16384, 0, 0, 0, 0, 0}, 8);
   Json accessor = {
       {"bufferView", view}, {"componentType", short_type}, {"type", "VEC3"}, {"count", 3}, {"normalized", true}};
   primitive(gltf)["targets"] = {{{"POSITION", gltf.append("accessors", accessor)}}};
@@ -251,7 +251,7 @@ GltfBuilder posed_triangle() {
   Json& attributes = primitive(gltf)["attributes"];
   attributes["NORMAL"] = gltf.add_floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
   attributes["JOINTS_0"] =
-      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
+      gltf.add_accessor<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
   attributes["WEIGHTS_0"] = gltf.add_floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
   return gltf;
 }
@@ -266,7 +266,7 @@ std::vector<glm::dvec3> corners_ws(const Scene& scene) {
 }
 
 glm::vec3 front_of(const Primitive& primitive) {
-  const auto corner = [&](std::size_t i) { return primitive.vertices[primitive.indices[i]].position_ls; };
+  const auto corner = [&](size_t i) { return primitive.vertices[primitive.indices[i]].position_ls; };
   return glm::normalize(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
 }
 
@@ -329,7 +329,7 @@ TEST(PosedSkin, KeepsFrontsInFrontWhereAJointMirrors) {
 TEST(PosedSkin, BlendsItsJoints) {
   GltfBuilder gltf = posed_triangle();
   primitive(gltf)["attributes"]["JOINTS_0"] =
-      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}, unsigned_byte_type, "VEC4", 3);
+      gltf.add_accessor<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}, unsigned_byte_type, "VEC4", 3);
   primitive(gltf)["attributes"]["WEIGHTS_0"] =
       gltf.add_floats({1, 0, 0, 0, 1, 0, 0, 0, 2, 2, 0, 0}, "VEC4", 4);  // which sum to 4
   gltf.json["nodes"][2]["translation"] = {0, 1, 3};

@@ -29,7 +29,7 @@ using Out = std::unique_ptr<std::FILE, CloseFile>;
 std::string shown_in(const Out& out) {
   std::array<char, 4096> bytes{};
   const ssize_t size = pread(fileno(out.get()), bytes.data(), bytes.size(), 0);
-  return {bytes.data(), static_cast<std::size_t>(size)};
+  return {bytes.data(), static_cast<size_t>(size)};
 }
 
 std::string shown_after_passes(Shown shown, double patience_s) {

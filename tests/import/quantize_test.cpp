@@ -36,8 +36,8 @@ Scene random_scene(std::mt19937& random, float size) {
   scene.meshes[0].primitives.resize(2);
   for (int p = 0; p < 2; ++p) {
     Primitive& primitive = scene.meshes[0].primitives[p];
-    primitive.material = static_cast<std::uint32_t>(p);
-    for (std::uint32_t i = 0; i < 3000; ++i) {
+    primitive.material = static_cast<uint32_t>(p);
+    for (uint32_t i = 0; i < 3000; ++i) {
       Vertex vertex;
       vertex.position_ls =
           p == 1 ? scene.meshes[0].primitives[0].vertices[i].position_ls
@@ -73,8 +73,8 @@ TEST(Quantize, KeepsTheErrorsThatItStates) {
       const std::vector<PackedMesh> meshes = quantize(scene, settings, info);
       double distance = 0, turned = 0, uv = 0;
       const glm::dmat4& world = before.instances[0].world_from_local;
-      for (std::size_t p = 0; p < 2; ++p) {
-        for (std::size_t i = 0; i < 3000; ++i) {
+      for (size_t p = 0; p < 2; ++p) {
+        for (size_t i = 0; i < 3000; ++i) {
           const Vertex& in = before.meshes[0].primitives[p].vertices[i];
           const PackedVertex& out = meshes[0].primitives[p].vertices[i];
           distance = std::max(
@@ -113,7 +113,7 @@ TEST(Quantize, KeepsItsErrorInTheImageWhateverTheTransform) {
     pack::BakeInfo info;
     const std::vector<PackedMesh> meshes = quantize(scene, {.uv_bits = 12}, info);
     double uv0 = 0, uv1 = 0;
-    for (std::size_t i = 0; i < 3000; ++i) {
+    for (size_t i = 0; i < 3000; ++i) {
       const Vertex& in = before.meshes[0].primitives[0].vertices[i];
       const pack::VertexAttributes& out = meshes[0].primitives[0].vertices[i].attributes;
       const glm::dvec2 off = glm::dvec2(out.uv1) - glm::dvec2(in.uv1);
@@ -135,7 +135,7 @@ TEST(Quantize, MovesSharedPlacesTogetherAndLeavesOutWhatNothingReads) {
   pack::BakeInfo info;
   const std::vector<PackedMesh> meshes = quantize(scene, {}, info);
   const std::vector<PackedPrimitive>& primitives = meshes.at(0).primitives;
-  for (std::size_t i = 0; i < 3000; ++i) {
+  for (size_t i = 0; i < 3000; ++i) {
     EXPECT_EQ(primitives[0].vertices[i].position_ls, primitives[1].vertices[i].position_ls);
     EXPECT_EQ(primitives[1].vertices[i].attributes.uv0, glm::vec2(0));
     EXPECT_EQ(primitives[1].vertices[i].attributes.uv1, glm::vec2(0));
@@ -153,7 +153,7 @@ TEST(Quantize, KeepsFloatsWhereItIsTold) {
       quantize(scene, {.position_error_m = 0, .normal_bits = 16, .uv_bits = 0}, info);
   EXPECT_EQ(info.position_error_m, 0);
   EXPECT_EQ(info.uv_error, 0);
-  for (std::size_t i = 0; i < 3000; ++i) {
+  for (size_t i = 0; i < 3000; ++i) {
     EXPECT_EQ(meshes[0].primitives[0].vertices[i].position_ls, before.meshes[0].primitives[0].vertices[i].position_ls);
     EXPECT_EQ(meshes[0].primitives[0].vertices[i].attributes.uv0, before.meshes[0].primitives[0].vertices[i].uv0);
   }
@@ -201,7 +201,7 @@ TEST(LargestScale, IsTheLongestThatAUnitVectorBecomes) {
 TEST(Quantize, HasTheSameBytesOnAnyNumberOfThreads) {
   std::vector<PackedVertex> bytes[2];
   pack::BakeInfo infos[2];
-  for (const std::size_t threads : {1u, 2u}) {
+  for (const size_t threads : {1u, 2u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     std::mt19937 random(10);
     Scene scene = random_scene(random, 7);

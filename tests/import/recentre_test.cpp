@@ -143,12 +143,12 @@ TEST(Recentre, MovesARootThatIsAnimatedAtAnyTime) {
     expect_near(pack.bake_info.origin_m + glm::dvec3(matrix_of(root.parent_from_local)[3]), far_m);
     const pack::AnimationChannel& moves = pack.animation_channels.at(0);
     ASSERT_EQ(moves.path, pack::AnimationPath::translation);
-    const auto value = [&](std::uint32_t i) {
+    const auto value = [&](uint32_t i) {
       const auto* v = &pack.animation_values.at(moves.first_value + 3 * i);
       return glm::vec3(v[0].value, v[1].value, v[2].value);
     };
     const bool cubic = moves.value_count == 18;
-    for (std::uint32_t key = 0; key < 2; ++key) {
+    for (uint32_t key = 0; key < 2; ++key) {
       expect_near(in_file(pack, value(cubic ? 3 * key + 1 : key)), far_m + glm::dvec3(8 * key, 0, 0));
       if (cubic) {
         EXPECT_EQ(value(3 * key), glm::vec3(1, 2, 3));
@@ -174,7 +174,7 @@ TEST(Recentre, MovesJointsWithTheirSkin) {
        {"inverseBindMatrices", gltf.add_floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.5f, -7, 0, 1}, "MAT4", 16)}}};
   Json& attributes = gltf.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["JOINTS_0"] =
-      gltf.add_accessor<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
+      gltf.add_accessor<uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, unsigned_byte_type, "VEC4", 3);
   attributes["WEIGHTS_0"] = gltf.add_floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
   const glm::dvec3 expected = far_m + glm::dvec3(0.5, 0, 0);
   expect_near(first_corner(gltf.bake()), expected);  // it stands still: posed at bake
@@ -188,7 +188,7 @@ TEST(Recentre, MovesJointsWithTheirSkin) {
   ASSERT_EQ(pack.joints.size(), 1u);
   expect_near(first_corner(pack), expected);
   glm::dmat4 world(1);
-  for (std::uint32_t node = pack.joints[0].node; node != pack::none; node = pack.nodes[node].parent)
+  for (uint32_t node = pack.joints[0].node; node != pack::none; node = pack.nodes[node].parent)
     world = matrix_of(pack.nodes[node].parent_from_local) * world;
   const glm::dmat4 posed = world * matrix_of(pack.joints[0].joint_from_bind);
   expect_near(pack.bake_info.origin_m + glm::dvec3(posed[3]), expected);
@@ -209,7 +209,7 @@ TEST(Recentre, MovesVerticesThatAreFarFromTheirMeshsOrigin) {
   for (const pack::Position& each : pack.positions) EXPECT_LT(glm::length(each.position_ls), 10);
   const Scene before = far_vertices(8000).import();
   ASSERT_EQ(pack.instances.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (size_t i = 0; i < 2; ++i) {
     glm::dvec3 low(INFINITY), expected(INFINITY);
     for (const Vertex& vertex : before.meshes[0].primitives[0].vertices)
       expected =

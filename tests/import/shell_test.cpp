@@ -15,7 +15,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-using Corners = std::vector<std::uint32_t>;
+using Corners = std::vector<uint32_t>;
 
 const std::vector<Material> materials = [] {
   std::vector<Material> out(2);
@@ -31,7 +31,7 @@ PackedPrimitive primitive_of(const std::vector<glm::vec3>& places, const Corners
 }
 
 /// The unit cube from `at`: two triangles a side, fronts outwards; each triangle with vertices of its own.
-PackedPrimitive cube(const glm::vec3& at, std::size_t triangles = 12, bool inside_out = false) {
+PackedPrimitive cube(const glm::vec3& at, size_t triangles = 12, bool inside_out = false) {
   PackedPrimitive out;
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -44,7 +44,7 @@ PackedPrimitive cube(const glm::vec3& at, std::size_t triangles = 12, bool insid
     }
     if ((side % 2 == 0) != inside_out) std::swap(corner[1], corner[3]);
     for (const int i : {0, 1, 2, 0, 2, 3}) {
-      out.indices.push_back(static_cast<std::uint32_t>(out.vertices.size()));
+      out.indices.push_back(static_cast<uint32_t>(out.vertices.size()));
       out.vertices.push_back({.position_ls = corner[i], .attributes = {}});
     }
   }
@@ -65,7 +65,7 @@ TEST(Shells, ACubeIsClosed) {
 }
 
 TEST(Shells, ABoxWithAHoleIsOpen) {
-  for (const std::size_t triangles : {11u, 10u}) {
+  for (const size_t triangles : {11u, 10u}) {
     EXPECT_EQ(shells_of({cube({}, triangles)}).shells, 1u);
     EXPECT_EQ(shells_of({cube({}, triangles)}).closed, 0u);
   }
@@ -111,22 +111,22 @@ TEST(Shells, ATriangleWithItsOwnBackEnclosesNothing) {
 }
 
 /// A dozen places and as many triangles as asked, without an area or not.
-PackedPrimitive heap(std::mt19937& random, std::size_t triangles, std::size_t place_count) {
+PackedPrimitive heap(std::mt19937& random, size_t triangles, size_t place_count) {
   std::vector<glm::vec3> places;
-  for (std::size_t i = 0; i < place_count; ++i) {
+  for (size_t i = 0; i < place_count; ++i) {
     places.push_back(
         {static_cast<float>(random() % 5), static_cast<float>(random() % 5), static_cast<float>(random() % 5)});
   }
   Corners corners;
-  for (std::size_t i = 0; i < 3 * triangles; ++i) corners.push_back(static_cast<std::uint32_t>(random() % place_count));
+  for (size_t i = 0; i < 3 * triangles; ++i) corners.push_back(static_cast<uint32_t>(random() % place_count));
   return primitive_of(places, corners);
 }
 
 using Triangle = std::array<std::array<float, 3>, 3>;
 
-Triangle turned(const PackedPrimitive& primitive, std::size_t t) {
+Triangle turned(const PackedPrimitive& primitive, size_t t) {
   Triangle out;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (size_t c = 0; c < 3; ++c) {
     const glm::vec3& p = corner_of(primitive, t, c);
     out[c] = {p.x, p.y, p.z};
   }
@@ -138,16 +138,16 @@ TEST(Clean, KeepsTheFirstOfEachTriangleWithAnArea) {
   std::mt19937 random(3);
   for (int round = 0; round < 100; ++round) {
     PackedMesh mesh{{heap(random, 200, 12), heap(random, 50, 8)}};
-    mesh.primitives[1].material = static_cast<std::uint32_t>(round % 2);
-    std::vector<std::pair<Triangle, std::uint32_t>> expected, kept;  // with the material
-    std::set<std::pair<Triangle, std::uint32_t>> seen;
-    std::uint64_t degenerate = 0, duplicate = 0;
+    mesh.primitives[1].material = static_cast<uint32_t>(round % 2);
+    std::vector<std::pair<Triangle, uint32_t>> expected, kept;  // with the material
+    std::set<std::pair<Triangle, uint32_t>> seen;
+    uint64_t degenerate = 0, duplicate = 0;
     const auto each = [&](auto use) {
       for (const PackedPrimitive& primitive : mesh.primitives) {
-        for (std::size_t t = 0; t < primitive.triangle_count(); ++t) use(primitive, t);
+        for (size_t t = 0; t < primitive.triangle_count(); ++t) use(primitive, t);
       }
     };
-    each([&](const PackedPrimitive& primitive, std::size_t t) {
+    each([&](const PackedPrimitive& primitive, size_t t) {
       const std::pair key(turned(primitive, t), primitive.material);
       const bool flat = glm::length(area_vector(primitive, t)) < 1e-9;
       degenerate += flat;
@@ -159,7 +159,7 @@ TEST(Clean, KeepsTheFirstOfEachTriangleWithAnArea) {
       }
     });
     const CleanCounts counts = clean(mesh, materials, true);
-    each([&](const PackedPrimitive& primitive, std::size_t t) {
+    each([&](const PackedPrimitive& primitive, size_t t) {
       kept.emplace_back(turned(primitive, t), primitive.material);
     });
     EXPECT_EQ(kept, expected);
@@ -169,7 +169,7 @@ TEST(Clean, KeepsTheFirstOfEachTriangleWithAnArea) {
 }
 
 /// Two triangles in the same place, each with vertices of its own.
-PackedMesh twins(std::uint32_t material) {
+PackedMesh twins(uint32_t material) {
   PackedPrimitive one = primitive_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2});
   one.vertices.insert(one.vertices.end(), one.vertices.begin(), one.vertices.begin() + 3);
   one.indices = {0, 1, 2, 3, 4, 5};
@@ -184,13 +184,13 @@ TEST(Clean, KeepsWhatASkinMayPullApart) {
   const CleanCounts counts = clean(mesh, materials, false);
   EXPECT_EQ(counts.duplicate, 0u);
   EXPECT_EQ(counts.degenerate, 1u);
-  EXPECT_EQ(mesh.primitives[0].indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 0, 1, 6}));
+  EXPECT_EQ(mesh.primitives[0].indices, (std::vector<uint32_t>{0, 1, 2, 3, 4, 5, 0, 1, 6}));
 }
 
 TEST(Clean, TellsMaskedTrianglesApartByWhatTheirAlphaDependsOn) {
-  constexpr std::uint32_t opaque_material = 0, masked_material = 1;
+  constexpr uint32_t opaque_material = 0, masked_material = 1;
   for (const int change : {0, 1, 2, 3}) {
-    for (const std::uint32_t material : {opaque_material, masked_material}) {
+    for (const uint32_t material : {opaque_material, masked_material}) {
       PackedMesh mesh = twins(material);
       pack::VertexAttributes& other = mesh.primitives[0].vertices[4].attributes;
       if (change == 1) other.uv0.y += 0.5f;
@@ -217,7 +217,7 @@ std::optional<ShellCounts> shells_by_openmesh(const PackedPrimitive& primitive) 
     if (added) it->second = mesh.add_vertex({p.x, p.y, p.z});
     return it->second;
   };
-  for (std::size_t t = 0; t < primitive.triangle_count(); ++t) {
+  for (size_t t = 0; t < primitive.triangle_count(); ++t) {
     if (!mesh.add_face(handle(corner_of(primitive, t, 0)), handle(corner_of(primitive, t, 1)),
                        handle(corner_of(primitive, t, 2)))
              .is_valid()) {
@@ -227,9 +227,9 @@ std::optional<ShellCounts> shells_by_openmesh(const PackedPrimitive& primitive) 
   ShellCounts counts;
   std::vector<bool> visited(mesh.n_faces(), false);
   for (const auto start : mesh.faces()) {
-    if (visited[static_cast<std::size_t>(start.idx())]) continue;
+    if (visited[static_cast<size_t>(start.idx())]) continue;
     std::vector<OpenMesh::FaceHandle> stack = {start};
-    visited[static_cast<std::size_t>(start.idx())] = true;
+    visited[static_cast<size_t>(start.idx())] = true;
     bool closed = true;
     double volume = 0;
     while (!stack.empty()) {
@@ -248,7 +248,7 @@ std::optional<ShellCounts> shells_by_openmesh(const PackedPrimitive& primitive) 
           closed = false;
           continue;
         }
-        const auto next = static_cast<std::size_t>(mesh.face_handle(across).idx());
+        const auto next = static_cast<size_t>(mesh.face_handle(across).idx());
         if (!visited[next]) stack.push_back(mesh.face_handle(across));
         visited[next] = true;
       }
@@ -271,9 +271,9 @@ TEST(Shells, AgreeWithOpenMeshWhereItHoldsTheMesh) {
         const glm::vec3 at(static_cast<float>(random() % 5), static_cast<float>(random() % 5),
                            static_cast<float>(random() % 5));
         const PackedPrimitive one = cube(2.0f * at, 12 - random() % 2, random() % 4 == 0);
-        const auto base = static_cast<std::uint32_t>(primitive.vertices.size());
+        const auto base = static_cast<uint32_t>(primitive.vertices.size());
         primitive.vertices.insert(primitive.vertices.end(), one.vertices.begin(), one.vertices.end());
-        for (const std::uint32_t index : one.indices) primitive.indices.push_back(base + index);
+        for (const uint32_t index : one.indices) primitive.indices.push_back(base + index);
       }
     }
     PackedMesh mesh{{primitive}};
@@ -297,12 +297,12 @@ TEST(Shells, OfManyCubesAreTheSameOnAnyNumberOfThreads) {
   for (int i = 0; i < 8000; ++i) {
     const PackedPrimitive one =
         cube({3.0f * static_cast<float>(i % 90), 3.0f * static_cast<float>(i / 90), 0}, i % 2 ? 12 : 11);
-    const auto base = static_cast<std::uint32_t>(all.vertices.size());
+    const auto base = static_cast<uint32_t>(all.vertices.size());
     all.vertices.insert(all.vertices.end(), one.vertices.begin(), one.vertices.end());
-    for (const std::uint32_t index : one.indices) all.indices.push_back(base + index);
+    for (const uint32_t index : one.indices) all.indices.push_back(base + index);
   }
   std::vector<bool> closed[2];
-  for (const std::size_t threads : {1u, 2u}) {
+  for (const size_t threads : {1u, 2u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     PackedMesh copy = mesh;
     EXPECT_EQ(find_shells(copy, materials, true).closed, 4000u);

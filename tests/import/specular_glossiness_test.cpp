@@ -12,7 +12,7 @@
 namespace chandelier::baker::test {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = std::vector<uint8_t>;
 
 /// What glTF's metallic-roughness model reflects: diffuse as the other model names it, and specular.
 struct Reflected {
@@ -80,13 +80,13 @@ TEST(SpecularGlossiness, TexelsAreConvertedOneByOne) {
 
 TEST(SpecularGlossiness, TheSmallerImageIsInterpolated) {
   Texels diffuse{4, 2, Bytes(32, 0)};
-  for (std::size_t i = 0; i < 8; ++i) diffuse.rgba[4 * i + 3] = static_cast<std::uint8_t>(30 * i);
+  for (size_t i = 0; i < 8; ++i) diffuse.rgba[4 * i + 3] = static_cast<uint8_t>(30 * i);
   const Texels glossy{2, 1, {0, 0, 0, 0, 0, 0, 0, 200}};
   const MetallicTexels made = convert_texels({}, &diffuse, &glossy);
   ASSERT_EQ(made.base_color.width, 4u);
   ASSERT_EQ(made.base_color.height, 2u);
   const int roughness[] = {255, 205, 105, 55};  // quarters of the way between the centres of both texels
-  for (std::size_t i = 0; i < 8; ++i) {
+  for (size_t i = 0; i < 8; ++i) {
     EXPECT_EQ(made.base_color.rgba[4 * i + 3], 30 * i);
     EXPECT_NEAR(made.metallic_roughness.rgba[4 * i + 1], roughness[i % 4], 1);
   }
@@ -105,9 +105,9 @@ GltfBuilder glossy_triangle(const Json& glossy, const Json& more = Json::object(
 /// Texture 0: a leaf's colour, half of it hole; texture 1: a mirror's.
 void add_textures(GltfBuilder& gltf) {
   Bytes leaf, mirror;
-  for (std::size_t i = 0; i < 64; ++i) {
-    leaf.insert(leaf.end(), {40, 160, 60, static_cast<std::uint8_t>(i % 8 < 4 ? 255 : 0)});
-    mirror.insert(mirror.end(), {static_cast<std::uint8_t>(i < 32 ? 0 : 255), 0, 0, 128});
+  for (size_t i = 0; i < 64; ++i) {
+    leaf.insert(leaf.end(), {40, 160, 60, static_cast<uint8_t>(i % 8 < 4 ? 255 : 0)});
+    mirror.insert(mirror.end(), {static_cast<uint8_t>(i < 32 ? 0 : 255), 0, 0, 128});
   }
   for (const Bytes& pixels : {leaf, mirror}) {
     const Bytes png = encoded("png", 8, 8, 4, pixels).bytes;
@@ -123,11 +123,11 @@ BakeSettings raw_textures() {
 }
 
 /// A texel of a texture's first level, as stored.
-glm::ivec4 texel_of(const pack::Contents& pack, std::uint32_t texture, std::size_t number) {
+glm::ivec4 texel_of(const pack::Contents& pack, uint32_t texture, size_t number) {
   const pack::Image& image = pack.images.at(pack.textures.at(texture).image);
   glm::ivec4 out;
   for (int c = 0; c < 4; ++c) {
-    out[c] = std::to_integer<int>(pack.image_data.at(image.first_byte + 4 * number + static_cast<std::size_t>(c)));
+    out[c] = std::to_integer<int>(pack.image_data.at(image.first_byte + 4 * number + static_cast<size_t>(c)));
   }
   return out;
 }
@@ -197,7 +197,7 @@ TEST(SpecularGlossiness, OfTwoTexturesIsMadeOfBoth) {
   const pack::Material& material = pack.materials.at(0);
   EXPECT_EQ(material.base_color_factor, glm::vec4(1));
   EXPECT_EQ(material.metallic_factor, 1);
-  const std::uint32_t base = material.base_color_texture, rough = material.metallic_roughness_texture;
+  const uint32_t base = material.base_color_texture, rough = material.metallic_roughness_texture;
   EXPECT_NEAR(texel_of(pack, base, 0).g, 163, 1);  // no mirror: 0.04 of the light is the diffuse colour's as well
   EXPECT_EQ(texel_of(pack, rough, 0).b, 0);
   EXPECT_EQ(texel_of(pack, rough, 0).g, 127);
@@ -226,7 +226,7 @@ TEST(SpecularGlossiness, WhoseMirrorIsLeftOutIsNoMirror) {
 GltfBuilder crossed_images(int long_side) {
   GltfBuilder gltf =
       glossy_triangle({{"diffuseTexture", {{"index", 0}}}, {"specularGlossinessTexture", {{"index", 1}}}});
-  const Bytes pixels(static_cast<std::size_t>(3 * long_side), 200);
+  const Bytes pixels(static_cast<size_t>(3 * long_side), 200);
   for (const EncodedImage& image : {encoded("png", long_side, 1, 3, pixels), encoded("png", 1, long_side, 3, pixels)}) {
     const int number = gltf.append("images", {{"bufferView", gltf.add_view(image.bytes)}, {"mimeType", "image/png"}});
     gltf.append("textures", {{"source", number}});
@@ -236,9 +236,9 @@ GltfBuilder crossed_images(int long_side) {
 
 TEST(SpecularGlossiness, OfCrossedImagesTakesNoMoreMemoryThanIsCounted) {
   const Scene scene = crossed_images(1024).import();
-  const std::uint32_t image = scene.textures.at(scene.materials.at(0).base_color.texture).image;
+  const uint32_t image = scene.textures.at(scene.materials.at(0).base_color.texture).image;
   EXPECT_EQ(claimed_texels(scene, image), 2u * 1024 + 2u * 1024 * 1024);
-  EXPECT_EQ(decode_image(scene, image).color.rgba.size(), std::size_t{4} * 1024 * 1024);
+  EXPECT_EQ(decode_image(scene, image).color.rgba.size(), size_t{4} * 1024 * 1024);
   const std::string error = error_of(crossed_images(16384).save("crossed"));  // two images of a gigabyte
   EXPECT_NE(
       error.find("image 0: its shape differs too much from that of its specularGlossinessTexture to make one image of "

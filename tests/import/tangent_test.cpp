@@ -61,7 +61,7 @@ TEST(Tangents, SplitVerticesBetweenMirroredHalves) {
   primitive.indices = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
   make_tangents(primitive);
   EXPECT_EQ(primitive.vertices.size(), 8u);  // the shared edge's two vertices are there twice
-  for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
+  for (size_t i = 0; i < primitive.indices.size(); ++i) {
     const bool left = i < 6;
     EXPECT_EQ(primitive.vertices[primitive.indices[i]].tangent_ls,
               left ? glm::vec4(1, 0, 0, 1) : glm::vec4(-1, 0, 0, -1));
@@ -83,12 +83,12 @@ TEST(Tangents, KeepJointsAndWeightsWithTheirVertices) {
   scene.meshes[0].primitives.push_back(square({{0, 1}, {1, 1}, {0, 0}, {1, 0}}));  // the upper half is mirrored
   Primitive& primitive = scene.meshes[0].primitives[0];
   primitive.needs_tangents = true;
-  for (std::uint16_t i = 0; i < 4; ++i) primitive.skin_vertices.push_back({{i, 0, 0, 0}, {65535, 0, 0, 0}});
+  for (uint16_t i = 0; i < 4; ++i) primitive.skin_vertices.push_back({{i, 0, 0, 0}, {65535, 0, 0, 0}});
   EXPECT_EQ(make_tangents(scene), 1u);
   ASSERT_EQ(primitive.skin_vertices.size(), primitive.vertices.size());
   EXPECT_GT(primitive.vertices.size(), 4u);
   const glm::vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-  for (std::size_t i = 0; i < primitive.vertices.size(); ++i) {
+  for (size_t i = 0; i < primitive.vertices.size(); ++i) {
     EXPECT_EQ(primitive.vertices[i].position_ls, corners[primitive.skin_vertices[i].joints[0]]);
   }
 }
@@ -100,7 +100,7 @@ TEST(Weld, MergesEqualVertices) {
   primitive.indices.insert(primitive.indices.end(), {4, 2, 3});
   weld(primitive);
   EXPECT_EQ(primitive.vertices.size(), 4u);
-  EXPECT_EQ(primitive.indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 0, 2, 3}));
+  EXPECT_EQ(primitive.indices, (std::vector<uint32_t>{0, 1, 2, 0, 2, 3, 0, 2, 3}));
 }
 
 TEST(Weld, KeepsVerticesApartThatDifferInJointsAlone) {

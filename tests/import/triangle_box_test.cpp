@@ -24,7 +24,7 @@ struct IntBox {
 };
 
 bool contains(const IntBox& box, const Int3& p) {
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (size_t k = 0; k < 3; ++k) {
     if (p[k] < box.low[k] || p[k] > box.high[k]) return false;
   }
   return true;
@@ -33,7 +33,7 @@ bool contains(const IntBox& box, const Int3& p) {
 /// Whether the closed segment a + t (b - a) meets the closed box: the bounds of t as fractions.
 bool segment_meets(const IntBox& box, const Int3& a, const Int3& b) {
   long from = 0, from_over = 1, to = 1, to_over = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (size_t k = 0; k < 3; ++k) {
     long step = b[k] - a[k], low = box.low[k] - a[k], high = box.high[k] - a[k];
     if (step == 0) {
       if (low > 0 || high < 0) return false;
@@ -52,10 +52,10 @@ bool segment_meets(const IntBox& box, const Int3& a, const Int3& b) {
 
 /// Whether the closed edge of the box that runs along axis k, at u, v on the next two axes, meets the closed triangle.
 /// False where the triangle is parallel to the edge: then one of its own edges or another edge of the box meets.
-bool box_edge_meets(const IntTriangle& t, std::size_t k, long u, long v, long low, long high) {
-  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+bool box_edge_meets(const IntTriangle& t, size_t k, long u, long v, long low, long high) {
+  const size_t i = (k + 1) % 3, j = (k + 2) % 3;
   std::array<long, 3> weight;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (size_t c = 0; c < 3; ++c) {
     const Int3 &p = t[(c + 1) % 3], &q = t[(c + 2) % 3];
     weight[c] = (p[i] - u) * (q[j] - v) - (p[j] - v) * (q[i] - u);
   }
@@ -63,7 +63,7 @@ bool box_edge_meets(const IntTriangle& t, std::size_t k, long u, long v, long lo
   if (sum == 0) return false;
   const long sign = sum < 0 ? -1 : 1;
   long height = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (size_t c = 0; c < 3; ++c) {
     if (weight[c] * sign < 0) return false;
     height += weight[c] * sign * t[c][k];
   }
@@ -74,11 +74,11 @@ bool box_edge_meets(const IntTriangle& t, std::size_t k, long u, long v, long lo
 /// The intersection of both is a polygon; where it is not empty it has a corner: one of the triangle in the box, one of
 /// the triangle's edges on a face, or an edge of the box in the triangle. All in whole numbers, so exact.
 bool exactly_overlap(const IntTriangle& t, const IntBox& box) {
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (size_t c = 0; c < 3; ++c) {
     if (contains(box, t[c]) || segment_meets(box, t[c], t[(c + 1) % 3])) return true;
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+  for (size_t k = 0; k < 3; ++k) {
+    const size_t i = (k + 1) % 3, j = (k + 2) % 3;
     for (const long u : {box.low[i], box.high[i]}) {
       for (const long v : {box.low[j], box.high[j]}) {
         if (box_edge_meets(t, k, u, v, box.low[k], box.high[k])) return true;
@@ -109,7 +109,7 @@ TEST(TriangleBox, AgreesWithExactTestOnSmallWholeNumbers) {
       IntTriangle t;
       for (Int3& corner : t) corner = {number(random), number(random), number(random)};
       IntBox box{{number(random), number(random), number(random)}, {}};
-      for (std::size_t k = 0; k < 3; ++k) box.high[k] = box.low[k] + size(random);
+      for (size_t k = 0; k < 3; ++k) box.high[k] = box.low[k] + size(random);
       const bool expected = exactly_overlap(t, box);
       ++(expected ? overlapping : apart);
       ASSERT_EQ(tested_overlap(t, box, 0x1p-47 * 64), expected)
@@ -131,18 +131,18 @@ TEST(TriangleBox, MissesNothingThatTouchesOnLargeWholeNumbers) {
   int overlapping = 0;
   for (int i = 0; i < 300000; ++i) {
     IntBox box{{number(random), number(random), number(random)}, {}};
-    for (std::size_t k = 0; k < 3; ++k) box.high[k] = box.low[k] + 1 + std::abs(number(random)) / 64;
+    for (size_t k = 0; k < 3; ++k) box.high[k] = box.low[k] + 1 + std::abs(number(random)) / 64;
     // Two corners anywhere, the third beyond a point of the box's surface or an ulp beside it.
     Int3 target;
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (size_t k = 0; k < 3; ++k) {
       const long at[] = {box.low[k], box.high[k], (box.low[k] + box.high[k]) / 2};
       target[k] = at[which(random)] + near(random);
     }
     IntTriangle t;
-    for (std::size_t c = 0; c < 2; ++c) t[c] = {number(random) / 2, number(random) / 2, number(random) / 2};
-    for (std::size_t k = 0; k < 3; ++k) t[2][k] = 2 * target[k] - t[0][k];  // the target halves an edge
+    for (size_t c = 0; c < 2; ++c) t[c] = {number(random) / 2, number(random) / 2, number(random) / 2};
+    for (size_t k = 0; k < 3; ++k) t[2][k] = 2 * target[k] - t[0][k];  // the target halves an edge
     if (i % 2) {
-      for (std::size_t k = 0; k < 3; ++k) t[1][k] = t[0][k] + near(random);
+      for (size_t k = 0; k < 3; ++k) t[1][k] = t[0][k] + near(random);
     }
     const bool expected = exactly_overlap(t, box);
     overlapping += expected;
@@ -178,7 +178,7 @@ TEST(TriangleBox, MissesNoSampledPoint) {
 
 // Cutting
 
-pack::VoxelGrid grid_of_ones(std::uint32_t side) {
+pack::VoxelGrid grid_of_ones(uint32_t side) {
   pack::VoxelGrid grid;
   grid.cell_size_m = {1, 1, 1};
   grid.resolution = {side, side, side};
@@ -187,31 +187,30 @@ pack::VoxelGrid grid_of_ones(std::uint32_t side) {
 
 double area_m2(const ClipPolygon& polygon) {
   glm::dvec3 sum(0);
-  for (std::size_t i = 2; i < polygon.size(); ++i) {
+  for (size_t i = 2; i < polygon.size(); ++i) {
     sum += glm::cross(polygon[i - 1].position - polygon[0].position, polygon[i].position - polygon[0].position);
   }
   return glm::length(sum) / 2;
 }
 
-using Pieces = std::map<std::uint32_t, ClipPolygon>;
+using Pieces = std::map<uint32_t, ClipPolygon>;
 
 /// Cuts a triangle; each cell at most once, each corner in its closed cell.
 Pieces cut(const Grid& grid, const Triangle& t) {
   Pieces pieces;
   Clipper clipper(grid);
-  clipper.cut({ClipVertex{t[0]}, ClipVertex{t[1]}, ClipVertex{t[2]}},
-              [&](std::uint32_t number, const ClipPolygon& part) {
-                EXPECT_TRUE(pieces.emplace(number, part).second) << "cell " << number << " twice";
-                const auto n = static_cast<int>(number);
-                const glm::ivec3 cell(n % grid.resolution.x, n / grid.resolution.x % grid.resolution.y,
-                                      n / grid.resolution.x / grid.resolution.y);
-                for (const ClipVertex& vertex : part) {
-                  for (int axis = 0; axis < 3; ++axis) {
-                    EXPECT_GE(vertex.position[axis], grid.plane(axis, cell[axis]) - 1e-12);
-                    EXPECT_LE(vertex.position[axis], grid.plane(axis, cell[axis] + 1) + 1e-12);
-                  }
-                }
-              });
+  clipper.cut({ClipVertex{t[0]}, ClipVertex{t[1]}, ClipVertex{t[2]}}, [&](uint32_t number, const ClipPolygon& part) {
+    EXPECT_TRUE(pieces.emplace(number, part).second) << "cell " << number << " twice";
+    const auto n = static_cast<int>(number);
+    const glm::ivec3 cell(n % grid.resolution.x, n / grid.resolution.x % grid.resolution.y,
+                          n / grid.resolution.x / grid.resolution.y);
+    for (const ClipVertex& vertex : part) {
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(vertex.position[axis], grid.plane(axis, cell[axis]) - 1e-12);
+        EXPECT_LE(vertex.position[axis], grid.plane(axis, cell[axis] + 1) + 1e-12);
+      }
+    }
+  });
   return pieces;
 }
 
@@ -241,7 +240,7 @@ TEST(Clip, CutsASquareOfTwoTrianglesIntoEachCellOnce) {
   const Grid grid(grid_of_ones(8));
   // 4 by 4 cells in the plane z = 2.5, its border half way through cells: 5 by 5 cells, 16 m2.
   const glm::dvec3 a(1.5, 2.5, 2.5), b(5.5, 2.5, 2.5), c(5.5, 6.5, 2.5), d(1.5, 6.5, 2.5);
-  std::map<std::uint32_t, double> areas;
+  std::map<uint32_t, double> areas;
   for (const Triangle& t : {Triangle{a, b, c}, Triangle{a, c, d}}) {
     for (const auto& [cell, part] : cut(grid, t)) areas[cell] += area_m2(part);
   }
@@ -307,11 +306,11 @@ TEST(UniqueVertices, KeepFirstOccurrences) {
   unique.reset(1000);
   std::mt19937 random(6);
   std::uniform_int_distribution<int> number(0, 5);
-  std::map<std::array<float, 4>, std::uint32_t> expected;
+  std::map<std::array<float, 4>, uint32_t> expected;
   for (int i = 0; i < 1000; ++i) {
     const std::array<float, 4> v = {static_cast<float>(number(random)), static_cast<float>(number(random)),
                                     static_cast<float>(number(random)) * 1e-20f, static_cast<float>(number(random))};
-    const auto found = expected.try_emplace(v, static_cast<std::uint32_t>(expected.size())).first;
+    const auto found = expected.try_emplace(v, static_cast<uint32_t>(expected.size())).first;
     EXPECT_EQ(unique.add({{v[0], v[1], v[2]}, {v[3], 7}}), found->second);
   }
   EXPECT_EQ(unique.vertices().size(), expected.size());
@@ -328,8 +327,7 @@ TEST(Grid, HoldsABoxWithRoomAroundIt) {
       {{1e6f, 0, 0}, {1e6f, 1, 1}},           {{-1e30f, 0, 3}, {1e30f, 0, 3}}, {{0, 0, 0}, {1e-20f, 0, 0}},
       {{-3e7f, -1e-3f, 0}, {-2e7f, 1e-3f, 0}}};
   for (const auto& box : boxes) {
-    for (const std::array<std::uint32_t, 3>& resolution :
-         {std::array<std::uint32_t, 3>{1, 1, 1}, {32, 32, 32}, {1024, 3, 7}}) {
+    for (const std::array<uint32_t, 3>& resolution : {std::array<uint32_t, 3>{1, 1, 1}, {32, 32, 32}, {1024, 3, 7}}) {
       const pack::VoxelGrid record = make_voxel_grid(box.low, box.high, resolution, pack::VoxelMode::separate);
       const Grid grid(record);
       for (int axis = 0; axis < 3; ++axis) {

@@ -11,10 +11,10 @@
 namespace chandelier::baker::test {
 
 /// A placed triangle: instance and vertices, as drawn.
-using Placed = std::array<std::uint32_t, 4>;
+using Placed = std::array<uint32_t, 4>;
 
 /// {placed triangle: {cell: how often}}; the count of cells stands for no cell. Runs must have the triangle's material.
-std::map<Placed, std::map<std::uint32_t, int>> cells_of_triangles(const pack::Contents& pack);
+std::map<Placed, std::map<uint32_t, int>> cells_of_triangles(const pack::Contents& pack);
 
 /// Every static triangle is in no cell if it surely overlaps more than two, else in all that it surely overlaps, and in
 /// none that it surely does not; as often as it is drawn. "Surely" leaves out what rounding decides.

@@ -43,7 +43,7 @@ GltfBuilder soup(int count, unsigned seed) {
     for (int t = 0; t < count / 4; ++t) {
       const std::array<float, 3> middle = {place(random), place(random), place(random)};
       const float size = std::pow(10.0f, power(random));
-      for (std::size_t i = 0; i < 9; ++i) positions.push_back(middle[i % 3] + size * unit(random));
+      for (size_t i = 0; i < 9; ++i) positions.push_back(middle[i % 3] + size * unit(random));
     }
     gltf.add_mesh({{"attributes", {{"POSITION", gltf.add_positions(positions)}}}, {"material", material}});
     gltf.add_node({{"mesh", material}});
@@ -70,8 +70,8 @@ TEST(Voxels, HaveEachTriangleInEachCellThatItOverlaps) {
   const pack::Contents pack = soup(2000, 1).bake();
   expect_separate(pack);
   EXPECT_GT(pack.voxel_grid[0].no_cull_run_count, 0u);
-  for (const std::array<std::uint32_t, 3>& resolution :
-       {std::array<std::uint32_t, 3>{1, 1, 1}, {2, 2, 2}, {3, 1, 2}, {64, 5, 17}, {1, 1, 1000}}) {
+  for (const std::array<uint32_t, 3>& resolution :
+       {std::array<uint32_t, 3>{1, 1, 1}, {2, 2, 2}, {3, 1, 2}, {64, 5, 17}, {1, 1, 1000}}) {
     expect_separate(with_voxels(pack, {resolution, pack::VoxelMode::separate}));
   }
 }
@@ -97,8 +97,8 @@ TEST(Voxels, HaveTrianglesThatLieInFacesOnBothSides) {
 
 TEST(Voxels, HaveAllAreaOnceWhereTheyAreClipped) {
   const pack::Contents pack = soup(2000, 2).bake();
-  for (const std::array<std::uint32_t, 3>& resolution :
-       {std::array<std::uint32_t, 3>{1, 1, 1}, {2, 2, 2}, {32, 32, 32}, {3, 70, 1}}) {
+  for (const std::array<uint32_t, 3>& resolution :
+       {std::array<uint32_t, 3>{1, 1, 1}, {2, 2, 2}, {32, 32, 32}, {3, 70, 1}}) {
     PassReport report;
     const pack::Contents clipped = with_voxels(pack, {resolution, pack::VoxelMode::clip}, &report);
     expect_clipped(clipped);
@@ -130,12 +130,12 @@ TEST(Voxels, HoldLongRuns) {
   // In a cell, an instance's triangles of a material are one run, and runs follow the order of batch instances.
   const pack::Contents pack = soup(8000, 4).bake({.voxels = {{2, 2, 2}}});
   for (const pack::VoxelCell& cell : pack.voxel_cells) {
-    std::set<std::array<std::uint32_t, 3>> seen;
-    std::array<std::uint32_t, 3> last = {};
-    for (std::uint32_t r = cell.first_run; r < cell.first_run + cell.run_count; ++r) {
+    std::set<std::array<uint32_t, 3>> seen;
+    std::array<uint32_t, 3> last = {};
+    for (uint32_t r = cell.first_run; r < cell.first_run + cell.run_count; ++r) {
       const pack::VoxelRun& run = pack.voxel_runs[r];
       const bool masked = pack.materials[run.material].alpha_mode == pack::AlphaMode::mask;
-      const std::array<std::uint32_t, 3> key = {masked ? 1u : 0u, run.material, run.instance};
+      const std::array<uint32_t, 3> key = {masked ? 1u : 0u, run.material, run.instance};
       EXPECT_TRUE(seen.insert(key).second);
       EXPECT_LE(last, key);
       last = key;
@@ -182,10 +182,10 @@ TEST(Voxels, HoldNothingThatThrowsNoShadow) {
 }
 
 TEST(Voxels, HoldFlatScenes) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (size_t axis = 0; axis < 3; ++axis) {
     std::vector<float> positions = {0, 0, 0, 4, 4, 4, 0, 0, 0, 1, 1, 1, 1.1f, 1.1f, 1.1f, 1, 1, 1};
     positions[(axis + 1) % 3 + 6] = positions[(axis + 1) % 3 + 15] = 3;
-    for (std::size_t i = axis; i < positions.size(); i += 3) positions[i] = 7;
+    for (size_t i = axis; i < positions.size(); i += 3) positions[i] = 7;
     GltfBuilder gltf;
     gltf.add_mesh({{"attributes", {{"POSITION", gltf.add_positions(positions)}}}});
     gltf.add_node({{"mesh", 0}});
@@ -232,7 +232,7 @@ TEST(Voxels, CarryTheTextureCoordinatesThatAMaskReads) {
     expect_clipped(pack);
     int masked = 0;
     for (const pack::VoxelRun& run : pack.voxel_runs) {
-      for (std::uint32_t i = run.first_index; i < run.first_index + run.index_count; ++i) {
+      for (uint32_t i = run.first_index; i < run.first_index + run.index_count; ++i) {
         const pack::VoxelVertex& v = pack.voxel_vertices[pack.voxel_indices[i].vertex];
         const bool mask = pack.materials[run.material].alpha_mode == pack::AlphaMode::mask;
         masked += mask;
@@ -251,8 +251,8 @@ TEST(Voxels, KeepFrontsInFrontWhereTheyAreClipped) {
   GltfBuilder gltf = one_triangle();
   gltf.add_node({{"mesh", 0}, {"scale", {-1, 1, 1}}});
   const pack::Contents pack = gltf.bake({.voxels = {{7, 7, 7}, pack::VoxelMode::clip}});
-  for (std::size_t i = 0; i < pack.voxel_indices.size(); i += 3) {
-    const auto at = [&](std::size_t c) { return pack.voxel_vertices[pack.voxel_indices[i + c].vertex].position_ws; };
+  for (size_t i = 0; i < pack.voxel_indices.size(); i += 3) {
+    const auto at = [&](size_t c) { return pack.voxel_vertices[pack.voxel_indices[i + c].vertex].position_ws; };
     EXPECT_GT(glm::cross(at(1) - at(0), at(2) - at(0)).z, 0);
   }
 }
@@ -260,13 +260,13 @@ TEST(Voxels, KeepFrontsInFrontWhereTheyAreClipped) {
 TEST(Voxels, HaveTheSameBytesOnAnyNumberOfThreads) {
   const GltfBuilder gltf = soup(20000, 7);
   for (const pack::VoxelMode mode : {pack::VoxelMode::separate, pack::VoxelMode::clip}) {
-    const auto bake_with = [&](std::size_t threads) {
+    const auto bake_with = [&](size_t threads) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       return gltf.bake({.voxels = {{16, 16, 16}, mode}});
     };
     const pack::Contents one = bake_with(1), four = bake_with(4);
     const pack::View a = pack::view_of(one), b = pack::view_of(four);
-    for (std::size_t i = 0; i < pack::section_infos.size(); ++i) {
+    for (size_t i = 0; i < pack::section_infos.size(); ++i) {
       const auto left = pack::section_bytes(a, i), right = pack::section_bytes(b, i);
       ASSERT_EQ(left.size(), right.size());
       EXPECT_TRUE(left.empty() || std::memcmp(left.data(), right.data(), left.size()) == 0)

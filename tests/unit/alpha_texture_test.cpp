@@ -37,7 +37,7 @@ constexpr auto mirror = pack::Wrap::mirrored_repeat;
 // Two rows of three texels, alpha 0, 51, 102 and 153, 204, 255, then a level of one texel that nothing may read.
 AlphaTexture six_texels(pack::Wrap u, pack::Wrap v, pack::Filter filter) {
   std::vector<uint8_t> bytes(4 * 7, 9);
-  for (std::size_t i = 0; i < 6; ++i) bytes[4 * i + 3] = static_cast<uint8_t>(51 * i);
+  for (size_t i = 0; i < 6; ++i) bytes[4 * i + 3] = static_cast<uint8_t>(51 * i);
   return texture_of({.width = 3, .height = 2, .level_count = 2, .format = pack::ImageFormat::rgba8_srgb}, bytes,
                     texture_with(u, v, filter));
 }
@@ -64,8 +64,8 @@ TEST(AlphaTexture, WrapsAsVulkanDoes) {
   for (const Case& c : cases) {
     const AlphaTexture along_u = six_texels(c.wrap, clamp, pack::Filter::nearest);
     for (int i = 0; i < 13; ++i)
-      EXPECT_NEAR(along_u.at({(static_cast<float>(i) - 3.5f) / 3.0f, 0.1f}),
-                  0.2f * c.texels[static_cast<std::size_t>(i)], 1e-6f)
+      EXPECT_NEAR(along_u.at({(static_cast<float>(i) - 3.5f) / 3.0f, 0.1f}), 0.2f * c.texels[static_cast<size_t>(i)],
+                  1e-6f)
           << static_cast<int>(c.wrap) << ", texel " << i - 4;
   }
   const AlphaTexture along_v = six_texels(clamp, mirror, pack::Filter::nearest);
@@ -112,8 +112,8 @@ TEST(AlphaTexture, DecodesBc3) {
                  texture_with(clamp, clamp, pack::Filter::nearest));
   const std::array<float, 8> left_values{210, 70, 190, 170, 150, 130, 110, 90};
   const std::array<float, 8> right_values{50, 250, 90, 130, 170, 210, 0, 255};
-  for (std::size_t y = 0; y < 3; ++y)
-    for (std::size_t x = 0; x < 7; ++x) {
+  for (size_t y = 0; y < 3; ++y)
+    for (size_t x = 0; x < 7; ++x) {
       const float expected = (x < 4 ? left_values : right_values)[(4 * y + x % 4) % 8] / 255.0f;
       EXPECT_NEAR(texture.at({(static_cast<float>(x) + 0.5f) / 7.0f, (static_cast<float>(y) + 0.5f) / 3.0f}), expected,
                   1e-6f)

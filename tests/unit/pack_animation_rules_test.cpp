@@ -106,12 +106,12 @@ TEST(PackAnimation, IsRightAsItIs) {
 
 /// Between them 10^12 keys, which would take many minutes to look at one by one.
 TEST(PackAnimation, ManyChannelsMayShareManyKeys) {
-  constexpr std::uint32_t count = 1000000;
+  constexpr uint32_t count = 1000000;
   Contents c = moving_sample();
   c.animations = {{.first_channel = 0, .channel_count = count, .duration_s = static_cast<float>(2 * count)}};
   c.animation_times.clear();
-  for (std::uint32_t k = 0; k < count; ++k) c.animation_times.push_back({static_cast<float>(k)});
-  c.animation_values.assign(4 * std::size_t{count}, {0.25f});
+  for (uint32_t k = 0; k < count; ++k) c.animation_times.push_back({static_cast<float>(k)});
+  c.animation_values.assign(4 * size_t{count}, {0.25f});
   AnimationChannel channel = c.animation_channels[0];
   channel.key_count = count;
   channel.value_count = 4 * count;
@@ -126,7 +126,7 @@ TEST(PackAnimation, ManyChannelsMayShareManyKeys) {
 }
 
 TEST(PackAnimation, ManyMeshesMayShareManySkinVertices) {
-  constexpr std::uint32_t count = 1000000;
+  constexpr uint32_t count = 1000000;
   Contents c = moving_sample();
   c.skin_vertices.resize(count, c.skin_vertices[0]);
   Mesh mesh = c.meshes[0];
@@ -150,23 +150,23 @@ TEST(PackAnimation, AChannelMayBeginWhereAnotherEnded) {
 /// asks for is refused, and one with as many is not.
 TEST(PackAnimation, MeshesAskForTheJointsOfTheirOwnVertices) {
   std::mt19937 random(7);
-  const auto below = [&](std::uint32_t end) { return static_cast<std::uint32_t>(random() % end); };
+  const auto below = [&](uint32_t end) { return static_cast<uint32_t>(random() % end); };
   for (int round = 0; round < 200; ++round) {
     Contents c = moving_sample();
     c.skin_vertices.resize(1 + below(40), c.skin_vertices[0]);
     for (SkinVertex& vertex : c.skin_vertices) vertex.joints = {below(9) | below(9) << 16, below(9) | below(9) << 16};
-    const auto vertices = static_cast<std::uint32_t>(c.skin_vertices.size());
+    const auto vertices = static_cast<uint32_t>(c.skin_vertices.size());
     Instance instance = c.instances[0];
     c.meshes.resize(1 + below(20), c.meshes[0]);
     c.instances.clear();
     c.skins.clear();
-    for (std::uint32_t i = 0; i < c.meshes.size(); ++i) {
-      const std::uint32_t first = below(vertices), size = 1 + below(vertices - first);
+    for (uint32_t i = 0; i < c.meshes.size(); ++i) {
+      const uint32_t first = below(vertices), size = 1 + below(vertices - first);
       c.meshes[i].first_skin_vertex = first;
       c.meshes[i].vertex_count = c.meshes[i].skin_vertex_count = size;
-      std::uint32_t asked = 0;
-      for (std::uint32_t v = first; v < first + size; ++v) {
-        for (const std::uint32_t pair : c.skin_vertices[v].joints) {
+      uint32_t asked = 0;
+      for (uint32_t v = first; v < first + size; ++v) {
+        for (const uint32_t pair : c.skin_vertices[v].joints) {
           asked = std::max({asked, (pair & 0xFFFF) + 1, (pair >> 16) + 1});
         }
       }
@@ -175,8 +175,8 @@ TEST(PackAnimation, MeshesAskForTheJointsOfTheirOwnVertices) {
       c.skins.push_back({.first_joint = 0, .joint_count = asked});
     }
     EXPECT_EQ(animation_fault(view_of(c)), "");
-    const std::uint32_t less = below(static_cast<std::uint32_t>(c.skins.size()));
-    const std::uint32_t asked = c.skins[less].joint_count--;
+    const uint32_t less = below(static_cast<uint32_t>(c.skins.size()));
+    const uint32_t asked = c.skins[less].joint_count--;
     const std::string i = std::to_string(less);
     EXPECT_EQ(animation_fault(view_of(c)), "instances[" + i + "].skin: has " + std::to_string(asked - 1) +
                                                " joints where meshes[" + i + "] asks for " + std::to_string(asked));

@@ -177,7 +177,7 @@ TEST(PackBvhRulesLimits, AreasMayEndAtTheGreatestFloat) {
 // A path of a million nodes: each inner node has one leaf and the rest. Neither it nor a fault at its end may overflow
 // the stack.
 TEST(PackBvhRulesLimits, ATreeMayBeAPath) {
-  constexpr std::uint32_t leaves = 500000;
+  constexpr uint32_t leaves = 500000;
   Contents contents = sample();
   contents.instance_bvh.clear();
   contents.instance_bvh_items.clear();
@@ -185,9 +185,9 @@ TEST(PackBvhRulesLimits, ATreeMayBeAPath) {
   contents.batch_bvh.clear();
   contents.batch_bvh_items.clear();
   const BatchInstance& draw = contents.batch_instances[0];
-  for (std::uint32_t i = 0; i < leaves; ++i) {
+  for (uint32_t i = 0; i < leaves; ++i) {
     if (i + 1 < leaves) contents.batch_bvh.push_back({draw.bounds_min_ws, 2 * leaves - 1, draw.bounds_max_ws, none});
-    const auto number = static_cast<std::uint32_t>(contents.batch_bvh.size());
+    const auto number = static_cast<uint32_t>(contents.batch_bvh.size());
     contents.batch_bvh.push_back({draw.bounds_min_ws, number + 1, draw.bounds_max_ws, i * 16 + 1});
     contents.batch_bvh_items.push_back({i});
   }

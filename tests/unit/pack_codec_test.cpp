@@ -25,7 +25,7 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
 }
 
 void expect_same(const View& a, const View& b) {
-  for (std::size_t i = 0; i < section_infos.size(); ++i) {
+  for (size_t i = 0; i < section_infos.size(); ++i) {
     const auto x = section_bytes(a, i), y = section_bytes(b, i);
     ASSERT_EQ(x.size(), y.size()) << section_infos[i].name;
     EXPECT_TRUE(x.empty() || std::memcmp(x.data(), y.data(), x.size()) == 0) << section_infos[i].name;
@@ -51,7 +51,7 @@ TEST(PackCodec, LongSectionsComeBack) {
   contents.vertex_attributes.clear();
   const View view = view_of(contents);
   const std::vector<Encoded> encoded = encode_sections(view);
-  for (std::size_t info = 2; info < section_infos.size(); ++info) {
+  for (size_t info = 2; info < section_infos.size(); ++info) {
     const std::span<const std::byte> records = section_bytes(view, info);
     if (records.empty()) continue;
     ASSERT_EQ(encoded[info].codec,
@@ -80,7 +80,7 @@ TEST(PackCodec, NoiseStaysRaw) {
   write(folder / "small.pack", contents, Compression::smallest);
   const File file(folder / "small.pack");
   for (const SectionEntry& entry : file.table()) {
-    const bool noise = entry.kind == static_cast<std::uint32_t>(Section::strings);
+    const bool noise = entry.kind == static_cast<uint32_t>(Section::strings);
     EXPECT_TRUE(!noise || entry.codec == Codec::raw);
   }
   EXPECT_LE(std::filesystem::file_size(folder / "small.pack"), std::filesystem::file_size(folder / "raw.pack"));
@@ -112,10 +112,10 @@ TEST_P(EveryLayout, AnyFloatsComeBackBitForBit) {
                                                    {2147483648.0f, 1, 0, 0},         // one too many for 31 bits
                                                    {-2147483520.0f, 2147483520.0f, 128, 0}};  // differences that wrap
   std::vector<float> records;
-  for (std::size_t row = 0; row < 4; ++row) {
+  for (size_t row = 0; row < 4; ++row) {
     for (const std::vector<float>& column : columns) records.push_back(column[row]);
   }
-  const std::size_t stride = 4 * columns.size();
+  const size_t stride = 4 * columns.size();
   const Bytes coded = to_columns(bytes_of(records), stride, Layouts(columns.size(), GetParam()));
   EXPECT_EQ(coded.size(), columns_bytes(4 * records.size(), stride));
   std::vector<float> back(records.size());
@@ -126,13 +126,13 @@ TEST_P(EveryLayout, AnyFloatsComeBackBitForBit) {
 TEST(PackCodec, AnyTrianglesComeBackAsTheyWereTurned) {
   std::mt19937 random(5);
   for (int round = 0; round < 300; ++round) {
-    std::vector<std::uint32_t> corners(3 * (random() % 200));
-    const std::uint32_t range = round % 3 == 0 ? 5 : round % 3 == 1 ? 1000 : 0xffffffffu;
-    for (std::uint32_t& corner : corners) corner = static_cast<std::uint32_t>(random()) % range;
+    std::vector<uint32_t> corners(3 * (random() % 200));
+    const uint32_t range = round % 3 == 0 ? 5 : round % 3 == 1 ? 1000 : 0xffffffffu;
+    for (uint32_t& corner : corners) corner = static_cast<uint32_t>(random()) % range;
     if (corners.empty()) corners = {0xffffffffu, 0, 0xffffffffu};
-    const Bytes coded = to_triangle_code(corners, static_cast<std::uint32_t>(random()));
+    const Bytes coded = to_triangle_code(corners, static_cast<uint32_t>(random()));
     EXPECT_LE(coded.size(), triangle_code_bound(corners.size()));
-    std::vector<std::uint32_t> back(corners.size());
+    std::vector<uint32_t> back(corners.size());
     ASSERT_TRUE(from_triangle_code(coded, back));
     ASSERT_EQ(back, corners) << "round " << round;
   }
@@ -142,19 +142,19 @@ TEST(PackCodec, AnyTrianglesComeBackAsTheyWereTurned) {
 TEST(PackCodec, DamagedCodesAreRefusedOrGiveOtherRecords) {
   const Contents contents = sheet(40);
   const auto positions = bytes_of(contents.positions);
-  const std::span corners(reinterpret_cast<const std::uint32_t*>(contents.indices.data()), contents.indices.size());
+  const std::span corners(reinterpret_cast<const uint32_t*>(contents.indices.data()), contents.indices.size());
   const Bytes columns = to_columns(positions, 12, {Layout::records, Layout::planes, Layout::delta_planes});
   const Bytes triangles = to_triangle_code(corners, 0);
   std::mt19937 random(6);
   int refused = 0;
   for (int round = 0; round < 10000; ++round) {
-    const auto damage = [&](Bytes coded, std::size_t head) {
+    const auto damage = [&](Bytes coded, size_t head) {
       coded[random() % (round % 2 ? head : coded.size())] = static_cast<std::byte>(random());
       if (round % 5 == 0) coded.resize(random() % coded.size());
       return coded;
     };
     Bytes records(positions.size());
-    std::vector<std::uint32_t> some(corners.size());
+    std::vector<uint32_t> some(corners.size());
     refused += !from_columns(damage(columns, 12), 12, records);
     refused += !from_triangle_code(damage(triangles, 4 + corners.size() / 3 + 16), some);
   }
@@ -168,7 +168,7 @@ TEST(PackCodec, DamagedFramesAreRefusedOrGiveOtherRecords) {
   std::mt19937 random(7);
   int refused = 0;
   for (int round = 0; round < 10000; ++round) {
-    const std::size_t info = 2 + static_cast<std::size_t>(round % 3);
+    const size_t info = 2 + static_cast<size_t>(round % 3);
     ASSERT_NE(encoded[info].codec, Codec::raw);
     Bytes stored = encoded[info].bytes, decoded(section_bytes(view_of(contents), info).size());
     stored[random() % stored.size()] = static_cast<std::byte>(random());

@@ -31,7 +31,7 @@ struct Target {
     descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   }
   ~Target() { ::close(descriptor); }
-  void put(std::size_t at, char value) const { ASSERT_EQ(pwrite(descriptor, &value, 1, static_cast<off_t>(at)), 1); }
+  void put(size_t at, char value) const { ASSERT_EQ(pwrite(descriptor, &value, 1, static_cast<off_t>(at)), 1); }
 };
 
 /// Both ways to store a pack.
@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Each, StoredPack, testing::Values(Compression::off, Com
 
 TEST_P(StoredPack, EveryTruncationIsRefused) {
   const Target target(GetParam());
-  for (std::size_t size = target.bytes.size(); size-- > 0;) {
+  for (size_t size = target.bytes.size(); size-- > 0;) {
     ASSERT_EQ(ftruncate(target.descriptor, static_cast<off_t>(size)), 0);
     ASSERT_NE(open_error(target.path), "") << size << " bytes";
   }
@@ -51,7 +51,7 @@ TEST_P(StoredPack, TenThousandChangedBytesAreRefused) {
   const Target target(GetParam());
   std::mt19937 random(2);
   for (int round = 0; round < 10000; ++round) {
-    const std::size_t at = random() % target.bytes.size();
+    const size_t at = random() % target.bytes.size();
     const int change = 1 + static_cast<int>(random() % 255);
     target.put(at, static_cast<char>(target.bytes[at] + change));
     ASSERT_NE(open_error(target.path), "") << "byte " << at << " plus " << change;
@@ -69,7 +69,7 @@ TEST(PackDamage, BytesAtTheEndAreRefused) {
 // Header, table, sections and the zeros between: every byte of the file is one that something checks.
 TEST(PackDamage, EveryBitCounts) {
   const Target target;
-  for (std::size_t at = 0; at < target.bytes.size(); ++at) {
+  for (size_t at = 0; at < target.bytes.size(); ++at) {
     for (int bit = 0; bit < 8; ++bit) {
       target.put(at, static_cast<char>(target.bytes[at] ^ (1 << bit)));
       ASSERT_NE(open_error(target.path), "") << "byte " << at << " bit " << bit;
@@ -81,8 +81,8 @@ TEST(PackDamage, EveryBitCounts) {
 
 TEST(PackDamage, EveryByteOfHeaderAndTableCounts) {
   const Target target;
-  const std::size_t end = sizeof(FileHeader) + section_infos.size() * sizeof(SectionEntry);
-  for (std::size_t at = 0; at < end; ++at) {
+  const size_t end = sizeof(FileHeader) + section_infos.size() * sizeof(SectionEntry);
+  for (size_t at = 0; at < end; ++at) {
     for (int change = 1; change < 256; change += 7) {
       target.put(at, static_cast<char>(target.bytes[at] + change));
       ASSERT_NE(open_error(target.path), "") << "byte " << at << " plus " << change;
@@ -97,7 +97,7 @@ void reseal(std::vector<char>& bytes) {
   std::memcpy(&header, bytes.data(), sizeof(header));
   if (header.section_count > section_infos.size()) return;
   char* table = bytes.data() + sizeof(header);
-  for (std::uint32_t i = 0; i < header.section_count; ++i) {
+  for (uint32_t i = 0; i < header.section_count; ++i) {
     SectionEntry entry;
     std::memcpy(&entry, table + i * sizeof(entry), sizeof(entry));
     if (entry.offset_bytes > bytes.size() || entry.size_bytes > bytes.size() - entry.offset_bytes) continue;
@@ -114,8 +114,8 @@ double follow_draws(const File& file) {
   for (const BatchInstance& draw : view.batch_instances) {
     const Batch& batch = view.batches[draw.batch];
     sum += view.instances[draw.instance].world_from_local[0].x;
-    for (std::uint32_t i = 0; i < batch.index_count; ++i) {
-      const std::uint32_t vertex = view.indices[batch.first_index + i].vertex;
+    for (uint32_t i = 0; i < batch.index_count; ++i) {
+      const uint32_t vertex = view.indices[batch.first_index + i].vertex;
       sum += view.positions[vertex].position_ls.x + view.vertex_attributes[vertex].uv0.x;
     }
     const Material& material = view.materials[batch.material];
@@ -132,7 +132,7 @@ double follow_draws(const File& file) {
 /// Throws Error where an image cannot be decoded.
 double follow_images(const View& view) {
   double sum = 0;
-  for (std::uint32_t i = 0; i < view.images.size(); ++i) {
+  for (uint32_t i = 0; i < view.images.size(); ++i) {
     const Texels texels = texels_of(view, i);
     for (const std::byte byte : texels.bytes()) sum += static_cast<double>(byte);
     if (texels.bytes().size() != image_bytes(view.images[i])) return NAN;
@@ -144,9 +144,9 @@ double follow_images(const View& view) {
 double follow_hierarchies(const View& view) {
   double sum = 0;
   const auto walk = [&](std::span<const BvhNode> nodes, bool hit, auto item) {
-    for (std::uint32_t at = 0; at < nodes.size();) {
+    for (uint32_t at = 0; at < nodes.size();) {
       const BvhNode& node = nodes[at];
-      for (std::uint32_t i = 0; node.leaf != none && i < node.leaf % 16; ++i) sum += item(node.leaf / 16 + i);
+      for (uint32_t i = 0; node.leaf != none && i < node.leaf % 16; ++i) sum += item(node.leaf / 16 + i);
       at = hit ? at + 1 : node.skip;
     }
   };
@@ -156,7 +156,7 @@ double follow_hierarchies(const View& view) {
     walk(view.instance_bvh, hit, [&](auto i) { return view.instances[view.instance_bvh_items[i].instance].mesh; });
     walk(view.triangle_bvh, hit,
          [&](auto i) { return view.indices[3 * view.triangle_bvh_items[i].triangle + 2].vertex; });
-    for (std::uint32_t at = 0; at < view.light_bvh.size();) {
+    for (uint32_t at = 0; at < view.light_bvh.size();) {
       const LightBvhNode& node = view.light_bvh[at];
       if (node.light != none) sum += view.lights[node.light].intensity;
       at = hit ? at + 1 : node.miss;
@@ -168,12 +168,12 @@ double follow_hierarchies(const View& view) {
 double follow_voxels(const View& view) {
   double sum = 0;
   for (const VoxelRun& run : view.voxel_runs) {
-    for (std::uint32_t i = 0; i < run.index_count; ++i) {
-      const std::uint32_t vertex = view.voxel_indices[run.first_index + i].vertex;
+    for (uint32_t i = 0; i < run.index_count; ++i) {
+      const uint32_t vertex = view.voxel_indices[run.first_index + i].vertex;
       sum += run.instance == none ? view.voxel_vertices[vertex].position_ws.x : view.positions[vertex].position_ls.x;
     }
   }
-  for (std::size_t i = 0; i < view.voxel_cells.size(); ++i) sum += view.voxel_occupancy[i / 32].bits >> i % 32 & 1;
+  for (size_t i = 0; i < view.voxel_cells.size(); ++i) sum += view.voxel_occupancy[i / 32].bits >> i % 32 & 1;
   return sum;
 }
 
@@ -182,22 +182,21 @@ double follow_motion(const View& view) {
   for (const Animation& animation : view.animations) {
     for (const AnimationChannel& channel :
          view.animation_channels.subspan(animation.first_channel, animation.channel_count)) {
-      const std::uint32_t width = channel.path == AnimationPath::rotation ? 4 : 3;
-      const std::uint32_t each = channel.interpolation == Interpolation::cubic_spline ? 3 * width : width;
-      for (std::uint32_t key = 0; key < channel.key_count; ++key) {
+      const uint32_t width = channel.path == AnimationPath::rotation ? 4 : 3;
+      const uint32_t each = channel.interpolation == Interpolation::cubic_spline ? 3 * width : width;
+      for (uint32_t key = 0; key < channel.key_count; ++key) {
         sum += view.animation_times[channel.first_key + key].time_s + view.nodes[channel.node].scale.x;
-        for (std::uint32_t i = 0; i < each; ++i)
-          sum += view.animation_values[channel.first_value + key * each + i].value;
+        for (uint32_t i = 0; i < each; ++i) sum += view.animation_values[channel.first_value + key * each + i].value;
       }
     }
   }
   for (const Instance& instance : view.instances) {
-    for (std::uint32_t node = instance.node; node != none; node = view.nodes[node].parent) sum += 1;
+    for (uint32_t node = instance.node; node != none; node = view.nodes[node].parent) sum += 1;
     if (instance.skin == none) continue;
     const Skin& skin = view.skins[instance.skin];
     const Mesh& mesh = view.meshes[instance.mesh];
     for (const SkinVertex& vertex : view.skin_vertices.subspan(mesh.first_skin_vertex, mesh.skin_vertex_count)) {
-      const std::uint32_t joint = vertex.joints[0] & 0xffff;
+      const uint32_t joint = vertex.joints[0] & 0xffff;
       sum += view.nodes[view.joints[skin.first_joint + joint].node].rotation.w;
     }
   }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstring>
 #include <functional>
 #include <random>
@@ -18,7 +19,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-void add_image(Contents& c, ImageFormat format, std::uint32_t side, std::string_view name, const Bytes& texels) {
+void add_image(Contents& c, ImageFormat format, uint32_t side, std::string_view name, const Bytes& texels) {
   c.image_data.resize((c.image_data.size() + 15) / 16 * 16);
   c.images.push_back({.first_byte = c.image_data.size(),
                       .stored_bytes = texels.size(),
@@ -31,7 +32,7 @@ void add_image(Contents& c, ImageFormat format, std::uint32_t side, std::string_
   c.image_data.insert(c.image_data.end(), texels.begin(), texels.end());
 }
 
-Bytes noise(std::size_t size, unsigned seed) {
+Bytes noise(size_t size, unsigned seed) {
   std::mt19937 random(seed);
   Bytes bytes(size);
   for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
@@ -39,9 +40,9 @@ Bytes noise(std::size_t size, unsigned seed) {
 }
 
 /// Half floats from 1 on.
-Bytes ramp(std::size_t size) {
+Bytes ramp(size_t size) {
   Bytes bytes(size, std::byte{0x3C});
-  for (std::size_t i = 0; i < size; i += 2) bytes[i] = static_cast<std::byte>(i / 64);
+  for (size_t i = 0; i < size; i += 2) bytes[i] = static_cast<std::byte>(i / 64);
   return bytes;
 }
 
@@ -52,20 +53,20 @@ Contents four_images() {
   add_image(c, ImageFormat::rgba16_sfloat, 32, "sky.exr", ramp(32 * 32 * 8));
   add_image(c, ImageFormat::rgba8_srgb, 64, "noise.png", noise(64 * 64 * 4, 1));
   add_image(c, ImageFormat::rgba8_unorm, 32, "black.png", Bytes(32 * 32 * 4));
-  add_image(c, ImageFormat::rgba8_unorm, 2048, "large.png", ramp(std::size_t{2048} * 2048 * 4));
+  add_image(c, ImageFormat::rgba8_unorm, 2048, "large.png", ramp(size_t{2048} * 2048 * 4));
   return c;
 }
 
-Bytes raw_texels(const Contents& c, std::size_t i) {
-  const auto first = c.image_data.begin() + static_cast<std::ptrdiff_t>(c.images[i].first_byte);
-  return {first, first + static_cast<std::ptrdiff_t>(c.images[i].size_bytes)};
+Bytes raw_texels(const Contents& c, size_t i) {
+  const auto first = c.image_data.begin() + static_cast<ptrdiff_t>(c.images[i].first_byte);
+  return {first, first + static_cast<ptrdiff_t>(c.images[i].size_bytes)};
 }
 
 bool same(std::span<const std::byte> a, std::span<const std::byte> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-std::string error_of(const View& view, std::uint32_t image) {
+std::string error_of(const View& view, uint32_t image) {
   try {
     texels_of(view, image);
     return {};
@@ -81,7 +82,7 @@ TEST(PackImages, EachComesBackWithTheCodecThatPays) {
   write(folder / "small.pack", contents, Compression::smallest);
   const File raw(folder / "raw.pack"), small(folder / "small.pack");
   const ImageCodec expected[] = {ImageCodec::zstd, ImageCodec::raw, ImageCodec::zstd, ImageCodec::zstd};
-  for (std::uint32_t i = 0; i < 4; ++i) {
+  for (uint32_t i = 0; i < 4; ++i) {
     EXPECT_EQ(raw.view().images[i].codec, ImageCodec::raw);
     EXPECT_EQ(small.view().images[i].codec, expected[i]) << i;
     EXPECT_TRUE(same(texels_of(raw.view(), i).bytes(), raw_texels(contents, i))) << i;
@@ -96,7 +97,7 @@ TEST(PackImages, EachComesBackWithTheCodecThatPays) {
   EXPECT_EQ(texels_of(small.view(), 1).bytes().data(),
             small.view().image_data.data() + small.view().images[1].first_byte);
   for (const SectionEntry& entry : small.table()) {
-    EXPECT_TRUE(entry.kind != static_cast<std::uint32_t>(Section::image_data) || entry.codec == Codec::raw);
+    EXPECT_TRUE(entry.kind != static_cast<uint32_t>(Section::image_data) || entry.codec == Codec::raw);
   }
   EXPECT_LT(small.size_bytes() * 50, raw.size_bytes());
 }
@@ -104,7 +105,7 @@ TEST(PackImages, EachComesBackWithTheCodecThatPays) {
 TEST(PackImages, SameBytesWhateverTheThreads) {
   const Folder folder;
   const Contents contents = four_images();
-  for (const std::size_t threads : {1, 2, 7}) {
+  for (const size_t threads : {1, 2, 7}) {
     write(folder / std::to_string(threads), view_of(contents), Sync::no, Compression::smallest, threads);
     EXPECT_EQ(read_file(folder / std::to_string(threads)), read_file(folder / "1"));
   }
@@ -119,7 +120,7 @@ TEST(PackImages, CodedImagesStayAsTheyAre) {
   write(folder / "c", first.view(), Sync::no);
   EXPECT_EQ(read_file(folder / "a"), read_file(folder / "b"));
   const File raw_sections(folder / "c");
-  for (std::uint32_t i = 0; i < 4; ++i) {
+  for (uint32_t i = 0; i < 4; ++i) {
     EXPECT_EQ(raw_sections.view().images[i].codec, first.view().images[i].codec);
     EXPECT_TRUE(same(texels_of(raw_sections.view(), i).bytes(), texels_of(first.view(), i).bytes()));
   }
@@ -138,7 +139,7 @@ TEST(PackImages, OneDamagedImageIsRefusedByNameAndTheOthersStay) {
   const File opened(folder / "b");
   EXPECT_TRUE(error_of(opened.view(), 2).starts_with("images[2] (black.png).codec: zstd: "))
       << error_of(opened.view(), 2);
-  for (const std::uint32_t good : {0u, 1u, 3u}) EXPECT_EQ(error_of(opened.view(), good), "");
+  for (const uint32_t good : {0u, 1u, 3u}) EXPECT_EQ(error_of(opened.view(), good), "");
   EXPECT_THROW(check_images(opened.view()), Error);
   EXPECT_NO_THROW(check_images(file.view()));
 }
@@ -174,7 +175,7 @@ TEST(PackImages, FramesOfOtherTexelsAreRefused) {
 }
 
 TEST(PackImages, EveryTruncationOfAnImageIsRefused) {
-  for (std::size_t cut = 1; cut < 60; ++cut) {
+  for (size_t cut = 1; cut < 60; ++cut) {
     const std::string error = error_with(ramp(32 * 32 * 8), [&](Image&, Bytes& stored) {
       stored.resize(cut < stored.size() - 8 ? stored.size() - cut : 8);
     });
@@ -204,7 +205,7 @@ TEST(PackImages, FlipsAreRefusedOrGiveOtherTexels) {
       ++refused_at_once;
       continue;
     }
-    for (std::uint32_t i = 0; i < 2; ++i) {
+    for (uint32_t i = 0; i < 2; ++i) {
       if (!error_of(view_of(changed), i).empty()) {
         ++refused_later;
       } else {
@@ -220,7 +221,7 @@ TEST(PackImages, FlipsAreRefusedOrGiveOtherTexels) {
 
 // Fields that no check has seen: nothing is encoded, nothing is read astray.
 TEST(PackImages, ImagesOutsideTheirSectionAreWrittenAsTheyAre) {
-  for (const std::uint64_t first : {std::uint64_t{1} << 62, ~std::uint64_t{15}, std::uint64_t{1} << 20}) {
+  for (const uint64_t first : {uint64_t{1} << 62, ~uint64_t{15}, uint64_t{1} << 20}) {
     Contents contents = sample();
     contents.images[1].first_byte = first;
     EXPECT_TRUE(encode_images(view_of(contents)).images.empty());

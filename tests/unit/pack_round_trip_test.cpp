@@ -16,7 +16,7 @@ bool same(std::span<const std::byte> a, std::span<const std::byte> b) {
 }
 
 void expect_same(const View& a, const View& b) {
-  for (std::size_t i = 0; i < section_infos.size(); ++i) {
+  for (size_t i = 0; i < section_infos.size(); ++i) {
     EXPECT_TRUE(same(section_bytes(a, i), section_bytes(b, i))) << section_infos[i].name;
   }
 }
@@ -25,7 +25,7 @@ TEST(PackRoundTrip, EverySectionComesBack) {
   const Folder folder;
   const Contents contents = sample();
   ASSERT_EQ(check(view_of(contents)), "");
-  for (std::size_t i = 0; i < section_infos.size(); ++i) {
+  for (size_t i = 0; i < section_infos.size(); ++i) {
     EXPECT_FALSE(section_bytes(view_of(contents), i).empty()) << "the sample lacks " << section_infos[i].name;
   }
   write(folder / "a.pack", contents);
@@ -60,8 +60,8 @@ TEST(PackRoundTrip, SectionsAreAligned) {
   const Folder folder;
   write(folder / "a.pack", sample());
   const File file(folder / "a.pack");
-  for (std::size_t i = 0; i < section_infos.size(); ++i) {
-    const auto address = reinterpret_cast<std::uintptr_t>(section_bytes(file.view(), i).data());
+  for (size_t i = 0; i < section_infos.size(); ++i) {
+    const auto address = reinterpret_cast<uintptr_t>(section_bytes(file.view(), i).data());
     EXPECT_EQ(address % section_alignment, 0u) << section_infos[i].name;
   }
 }

@@ -16,7 +16,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float inf = std::numeric_limits<float>::infinity();
 
 /// Makes the second image a texel of half floats.
-void set_halves(Contents& c, const std::array<std::uint16_t, 4>& halves) {
+void set_halves(Contents& c, const std::array<uint16_t, 4>& halves) {
   c.images[1].format = ImageFormat::rgba16_sfloat;
   c.images[1].size_bytes = c.images[1].stored_bytes = sizeof(halves);
   std::memcpy(&c.image_data[c.images[1].first_byte], halves.data(), sizeof(halves));
@@ -47,7 +47,7 @@ const Breach breaches[] = {
      "batches[0].first_index: 9 plus index_count 3 is past the 9 indices"},
     {"RunWraps", [](Contents& c) { c.batches[0].first_index = 0xFFFFFFFFu; },
      "batches[0].first_index: 4294967295 plus index_count 3 is past the 9 indices"},
-    {"LongRunWraps", [](Contents& c) { c.images[0].first_byte = ~std::uint64_t{15}; },
+    {"LongRunWraps", [](Contents& c) { c.images[0].first_byte = ~uint64_t{15}; },
      "images[0].first_byte: 18446744073709551600 plus stored_bytes 44 is past the 576 image_data"},
     {"String", [](Contents& c) { c.materials[1].name.size_bytes = 1000; },
      "materials[1].name.offset_bytes: 33 plus size_bytes 1000 is past the 96 strings"},
@@ -183,7 +183,7 @@ TEST(PackRulesLimits, AFaultIsFoundAnywhereInALongSection) {
   Contents contents = sample();
   contents.positions.resize(1003);
   contents.vertex_attributes.resize(1003);
-  for (const std::size_t at : {std::size_t{4}, std::size_t{500}, std::size_t{1001}, std::size_t{1002}}) {
+  for (const size_t at : {size_t{4}, size_t{500}, size_t{1001}, size_t{1002}}) {
     Contents broken = contents;
     broken.vertex_attributes[at].uv1.y = nan;
     EXPECT_EQ(check(view_of(broken)), "vertex_attributes[" + std::to_string(at) + "].uv1.y: nan is not finite");

@@ -17,7 +17,7 @@ namespace {
 /// Two triangles, the second one masked, and a banner of one triangle that bones move.
 void add_vertices(Contents& c) {
   c.positions = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, -0.5f}}, {{0, 0, 0}}, {{0.5f, 0, 0}}, {{0, 0.5f, 0}}};
-  for (std::uint32_t i = 0; i < c.positions.size(); ++i) {
+  for (uint32_t i = 0; i < c.positions.size(); ++i) {
     const float f = static_cast<float>(i);
     c.vertex_attributes.push_back(
         {encode_normal({0, 0, 1}), encode_tangent({1, 0, 0, -1}), {0.25f * f, 0.5f}, {2.0f * f, -1}, 0xff804020u + i});
@@ -184,8 +184,8 @@ void add_motion(Contents& c) {
   c.instances.push_back({{{{1, 0, 0, 0.5f}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1, 1, 0, 1, 0, banner});
   c.skins.push_back({0, 2, banner});
   c.joints = {{{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 0}, {{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}, 1}};
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const std::uint32_t first = 20000 * (i + 1);
+  for (uint32_t i = 0; i < 3; ++i) {
+    const uint32_t first = 20000 * (i + 1);
     c.skin_vertices.push_back({{0u | 1u << 16, 0}, {first | (65535 - first) << 16, 0}});
   }
   c.animations.push_back({0, 3, 1.5f, 0, add_string(c, "wave")});
@@ -212,23 +212,23 @@ Contents sample() {
   return contents;
 }
 
-Contents sheet(std::uint32_t side) {
+Contents sheet(uint32_t side) {
   Contents c;
-  for (std::uint32_t y = 0; y < side; ++y) {
-    for (std::uint32_t x = 0; x < side; ++x) {
+  for (uint32_t y = 0; y < side; ++y) {
+    for (uint32_t x = 0; x < side; ++x) {
       const auto u = static_cast<float>(x), v = static_cast<float>(y);
       c.positions.push_back({{u / 64, v / 128, std::round(300 * std::sin(u / 9) * std::cos(v / 7)) / 1024}});
       c.vertex_attributes.push_back({x * 7919u, y * 104729u, {u / 16384, v / 16384}, {}, 0xffffffffu});
     }
   }
-  for (std::uint32_t y = 0; y + 1 < side; ++y) {
-    for (std::uint32_t x = 0; x + 1 < side; ++x) {
-      const std::uint32_t i = y * side + x;
-      const std::uint32_t turned =
+  for (uint32_t y = 0; y + 1 < side; ++y) {
+    for (uint32_t x = 0; x + 1 < side; ++x) {
+      const uint32_t i = y * side + x;
+      const uint32_t turned =
           ((x * 2654435761u ^ y * 40503u) * 2246822519u) >> 31;  // which diagonal: without a pattern
-      const std::uint32_t a = turned ? i + side : i, b = turned ? i : i + 1;
-      const std::uint32_t across = turned ? i + side + 1 : i + side, d = turned ? i + 1 : i + side + 1;
-      for (const std::uint32_t corner : {a, b, across, across, b, d}) c.indices.push_back({corner});
+      const uint32_t a = turned ? i + side : i, b = turned ? i : i + 1;
+      const uint32_t across = turned ? i + side + 1 : i + side, d = turned ? i + 1 : i + side + 1;
+      for (const uint32_t corner : {a, b, across, across, b, d}) c.indices.push_back({corner});
     }
   }
   c.bake_info.batch_triangles = 1;
@@ -236,7 +236,7 @@ Contents sheet(std::uint32_t side) {
 }
 
 StringRef add_string(Contents& contents, std::string_view text) {
-  const StringRef ref{static_cast<std::uint32_t>(contents.strings.size()), static_cast<std::uint32_t>(text.size())};
+  const StringRef ref{static_cast<uint32_t>(contents.strings.size()), static_cast<uint32_t>(text.size())};
   for (const char c : text) contents.strings.push_back(static_cast<std::byte>(c));
   return ref;
 }

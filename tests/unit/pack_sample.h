@@ -2,6 +2,7 @@
 // A small pack that has something in every section, and what tests do with files.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ Contents sample();
 
 /// A wavy sheet of `side` times `side` vertices whose positions are multiples of 2^-10: long sections, and nothing
 /// drawn. Valid. pack_python_test.py knows its values.
-Contents sheet(std::uint32_t side);
+Contents sheet(uint32_t side);
 
 /// Appends to the strings section.
 StringRef add_string(Contents& contents, std::string_view text);

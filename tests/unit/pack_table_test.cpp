@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
+#include <cstddef>
 #include <cstring>
 #include <functional>
 
@@ -23,9 +24,9 @@ Parts take_apart(const std::vector<char>& bytes) {
   Parts parts;
   std::memcpy(&parts.header, bytes.data(), sizeof(FileHeader));
   parts.table.resize(parts.header.section_count);
-  const std::size_t table_bytes = parts.table.size() * sizeof(SectionEntry);
+  const size_t table_bytes = parts.table.size() * sizeof(SectionEntry);
   std::memcpy(parts.table.data(), bytes.data() + sizeof(FileHeader), table_bytes);
-  parts.rest.assign(bytes.begin() + static_cast<std::ptrdiff_t>(sizeof(FileHeader) + table_bytes), bytes.end());
+  parts.rest.assign(bytes.begin() + static_cast<ptrdiff_t>(sizeof(FileHeader) + table_bytes), bytes.end());
   return parts;
 }
 
@@ -47,10 +48,10 @@ void PrintTo(const Lie& lie, std::ostream* out) {
   *out << lie.name;
 }
 
-constexpr std::uint64_t huge = std::uint64_t{1} << 63;
+constexpr uint64_t huge = uint64_t{1} << 63;
 
 // Table: 0 bake_info, 1 strings, 2 positions (7 of 12 bytes), …, 36 skin_vertices: all of them.
-constexpr std::size_t last = section_infos.size() - 1;
+constexpr size_t last = section_infos.size() - 1;
 const Lie lies[] = {
     {"OlderVersion", [](Parts& p) { p.header.version = 1; },
      "a pack of an older chandelier-bake: bake it again (version 1, "},
@@ -77,7 +78,7 @@ const Lie lies[] = {
     {"DecodedSize",
      [](Parts& p) {
        p.table[2].codec = Codec::columns;
-       p.table[2].count = std::uint64_t{1} << 40;
+       p.table[2].count = uint64_t{1} << 40;
      },
      "table[2].count: 1099511627776 records of 12 bytes are too many for the stored 84 (section positions)"},
     {"Reserved", [](Parts& p) { p.table[2].reserved = 1; }, "table[2].reserved: 1 where 0 must be"},
@@ -86,9 +87,9 @@ const Lie lies[] = {
     {"OffsetNotAligned", [](Parts& p) { ++p.table[2].offset_bytes; }, "table[2].offset_bytes: "},
     {"OffsetOverlaps", [](Parts& p) { p.table[2].offset_bytes -= 256; }, "table[2].offset_bytes: "},
     {"OffsetLeavesAGap", [](Parts& p) { p.table[2].offset_bytes += 256; }, "table[2].offset_bytes: "},
-    {"OffsetHuge", [](Parts& p) { p.table[2].offset_bytes = ~std::uint64_t{255}; }, "table[2].offset_bytes: "},
+    {"OffsetHuge", [](Parts& p) { p.table[2].offset_bytes = ~uint64_t{255}; }, "table[2].offset_bytes: "},
     {"SizePastTheEnd", [](Parts& p) { p.table[last].size_bytes += 16; }, "table[36].size_bytes: "},
-    {"SizeWraps", [](Parts& p) { p.table[2].size_bytes = ~std::uint64_t{11}; }, "table[2].size_bytes: "},
+    {"SizeWraps", [](Parts& p) { p.table[2].size_bytes = ~uint64_t{11}; }, "table[2].size_bytes: "},
     {"SizeZero", [](Parts& p) { p.table[2].size_bytes = p.table[2].count = 0; },
      "table[2].size_bytes: 0 where 12 must"},
     {"Count", [](Parts& p) { p.table[2].count = 5; }, "table[2].count: 5 of 12 bytes are not the size 84"},
@@ -100,7 +101,7 @@ const Lie lies[] = {
      [](Parts& p) {
        p.table[0].count = 2;
        p.table[0].size_bytes *= 2;
-       const std::size_t rest_start = sizeof(FileHeader) + p.table.size() * sizeof(SectionEntry);
+       const size_t rest_start = sizeof(FileHeader) + p.table.size() * sizeof(SectionEntry);
        p.table[0].checksum = XXH3_64bits(&p.rest[p.table[0].offset_bytes - rest_start], p.table[0].size_bytes);
      },
      "bake_info: not exactly 1 record"},
@@ -127,7 +128,7 @@ TEST_P(PackTable, LieIsNamed) {
   const Folder folder;
   write(folder / "a.pack", sample());
   Parts parts = take_apart(read_file(folder / "a.pack"));
-  const std::uint64_t checksum = parts.header.table_checksum;
+  const uint64_t checksum = parts.header.table_checksum;
   GetParam().tell(parts);
   if (parts.header.table_checksum == checksum && parts.header.section_count == parts.table.size()) {
     parts.header.table_checksum = XXH3_64bits(parts.table.data(), parts.table.size() * sizeof(SectionEntry));

@@ -81,7 +81,7 @@ const Breach breaches[] = {
     {"NothingClippedInSeparateMode", [](Contents& c) { c.voxel_grid[0].mode = VoxelMode::separate; },
      "voxel_runs[0].instance: none where nothing is clipped"},
     {"RunOfWhatMoves", [](Contents& c) { c.voxel_runs[2].instance = 2; }, "voxel_runs[2].instance: 2 is dynamic"},
-    {"PlacedIndex", [](Contents& c) { c.voxel_indices[7].vertex = static_cast<std::uint32_t>(c.positions.size()); },
+    {"PlacedIndex", [](Contents& c) { c.voxel_indices[7].vertex = static_cast<uint32_t>(c.positions.size()); },
      nullptr},
     {"ClippedIndex", [](Contents& c) { c.voxel_indices[23].vertex = 10; },
      "voxel_indices[23].vertex: 10 is not below the 10 voxel_vertices"},

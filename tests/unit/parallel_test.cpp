@@ -11,13 +11,13 @@
 namespace chandelier::pack::test {
 namespace {
 
-class Threads : public testing::TestWithParam<std::size_t> {};
+class Threads : public testing::TestWithParam<size_t> {};
 
 TEST_P(Threads, DoEachRoundOnceAndAreNoMoreThanAllowed) {
   std::vector<int> done(200);
   std::set<std::thread::id> ids;
   std::mutex mutex;
-  parallel_for(done.size(), GetParam(), [&](std::size_t i) {
+  parallel_for(done.size(), GetParam(), [&](size_t i) {
     ++done[i];
     std::this_thread::sleep_for(std::chrono::microseconds(200));  // time for others to begin
     const std::lock_guard lock(mutex);
@@ -34,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(Each, Threads, testing::Values(1, 2, 3, 8));
 
 TEST(ParallelFor, ThrowsWhatARoundThrew) {
   EXPECT_THROW(parallel_for(10, 2,
-                            [](std::size_t i) {
+                            [](size_t i) {
                               if (i == 7) throw std::runtime_error("seven");
                             }),
                std::runtime_error);

@@ -29,7 +29,7 @@ void expect_refused(const std::string& line, const std::string& because) {
 }
 
 std::string stage_answer(const Recipe& recipe, std::string_view stage) {
-  for (std::size_t i = 0; i < stage_choices().size(); ++i)
+  for (size_t i = 0; i < stage_choices().size(); ++i)
     if (stage_choices()[i].stage == stage) return std::string(answer(recipe, i));
   return "no such stage";
 }

@@ -40,15 +40,14 @@ std::vector<float> read_floats(const fs::path& path, uint32_t width, uint32_t he
   EXPECT_EQ(input->spec().width, static_cast<int>(width));
   EXPECT_EQ(input->spec().height, static_cast<int>(height));
   EXPECT_EQ(input->spec().nchannels, 3);
-  std::vector<float> values(std::size_t{width} * height * 3);
+  std::vector<float> values(size_t{width} * height * 3);
   EXPECT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, values.data())) << input->geterror();
   return values;
 }
 
 void expect_radiance(const fs::path& path, const Picture& picture) {
   const std::vector<float> values = read_floats(path, picture.width, picture.height);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    ASSERT_EQ(values[i], picture.radiance[i / 3 * 4 + i % 3]) << "value " << i;
+  for (size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], picture.radiance[i / 3 * 4 + i % 3]) << "value " << i;
 }
 
 TEST(PlayerPictures, PngHoldsTheShownBytes) {
@@ -60,7 +59,7 @@ TEST(PlayerPictures, PngHoldsTheShownBytes) {
   ASSERT_EQ(input->spec().nchannels, 3);
   std::vector<uint8_t> bytes(13 * 7 * 3);
   ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, bytes.data()));
-  for (std::size_t i = 0; i < bytes.size(); ++i) ASSERT_EQ(bytes[i], picture.shown[i / 3 * 4 + i % 3]) << "byte " << i;
+  for (size_t i = 0; i < bytes.size(); ++i) ASSERT_EQ(bytes[i], picture.shown[i / 3 * 4 + i % 3]) << "byte " << i;
   EXPECT_EQ(folder.names().size(), 1u);
 }
 

@@ -91,7 +91,7 @@ void expect_box_shadow(const frame::FrameLight& light, double end, Way way_from)
   const std::vector<SurfacePoint> points = floor_points(3.0f);
   const std::vector<uint8_t> found = ask(box_over_floor(), light, points);
   int lit = 0, dark = 0, edge = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (size_t i = 0; i < points.size(); ++i) {
     const auto expected = in_shadow_of_box(points[i], way_from(glm::dvec3(points[i].position)), end);
     ++(!expected ? edge : *expected ? dark : lit);
     if (!expected) continue;
@@ -175,7 +175,7 @@ TEST(RayTraced, LightFallsThroughWhatAnAlphaTestCutsOut) {
         points.push_back(
             {{(static_cast<float>(x) - 9.5f) / 10.0f, 0, (static_cast<float>(z) - 9.5f) / 10.0f}, {0, 1, 0}});
     const auto found = ask(pack, sun({0, -1, 0}), points);
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (size_t i = 0; i < points.size(); ++i) {
       // uv is (0, 0) at -x, -z, v growing with z; clamped outside.
       const glm::vec2 uv = (glm::vec2(points[i].position.x, points[i].position.z) + 1.0f) / 2.0f;
       const glm::vec2 at = transform == uv_identity ? uv : glm::vec2(uv.y, uv.x + 0.5f);
