@@ -57,7 +57,7 @@ bool is_text_of(std::string_view text, char first) {
   return start != text.end() && *start == first;
 }
 
-/// As a shell takes it.
+/// Quotes a word for the shell if necessary.
 std::string quoted(const std::string& word) {
   const bool is_plain = std::ranges::all_of(word, [](unsigned char c) {
     return std::isalnum(c) != 0 || "/._-+,@%"sv.find(static_cast<char>(c)) != std::string_view::npos;

@@ -106,7 +106,7 @@ std::string first_fault(const char* section, std::span<const Record> records) {
   return {};
 }
 
-// What coded images hold is checked where they are decoded.
+// The content of coded images is checked when they are decoded.
 std::string texel_fault(const View& view) {
   uint64_t end = 0;
   for (size_t i = 0; i < view.images.size(); ++i) {
@@ -123,7 +123,7 @@ std::string texel_fault(const View& view) {
   return {};
 }
 
-// What BatchInstance promises: runs of one material are as long as can be, and the opaque ones come first.
+// Checks what BatchInstance promises: runs of one material are as long as possible, and the opaque ones come first.
 std::string order_fault(const View& view) {
   const auto place = [&](const BatchInstance& draw) {
     const uint32_t material = view.batches[draw.batch].material;
@@ -143,7 +143,7 @@ std::string light_fault(const Light& light) {
   Light alone = light;
   alone.voxel = alone.node = none;
   alone.name = {};
-  BakeInfo info;  // which validate() looks for
+  BakeInfo info;  // validate() requires one
   info.batch_triangles = 1;
   View view;
   view.bake_info = &info;

@@ -82,14 +82,14 @@ std::string duration_fault(const View& view) {
   return {};
 }
 
-/// The number of the joint after the last that a vertex asks for.
+/// One more than the largest number of a joint that a vertex refers to.
 uint32_t joints_asked(const SkinVertex& vertex) {
   uint32_t end = 0;
   for (const uint32_t pair : vertex.joints) end = std::max(end, 1 + std::max(pair & 0xFFFFu, pair >> 16));
   return end;
 }
 
-/// The same of each mesh. Meshes may share skin vertices, so each vertex is read once for all of them: meshes are
+/// The same for each mesh. Meshes may share skin vertices, so each vertex is read once for all of them: meshes are
 /// sorted by their end, and only vertices whose maximum exceeds all later ones are kept.
 std::vector<uint32_t> joints_asked_by_meshes(const View& view) {
   const auto end_of = [](const Mesh& mesh) { return size_t{mesh.first_skin_vertex} + mesh.skin_vertex_count; };
@@ -100,7 +100,7 @@ std::vector<uint32_t> joints_asked_by_meshes(const View& view) {
     size_t vertex;
     uint32_t asked;
   };
-  std::vector<Waiting> waiting;  // vertices ascend, what they ask for descends
+  std::vector<Waiting> waiting;  // vertices ascend, their maxima descend
   std::vector<uint32_t> asked(view.meshes.size());
   size_t next = 0;
   for (const uint32_t i : order) {

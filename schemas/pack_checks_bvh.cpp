@@ -2,8 +2,8 @@
 // The rules between fields of the hierarchies over batches, instances and triangles.
 //
 // That a section of nodes is a tree follows from what each node says about its children, by induction: a root's range
-// is known, and an inner node's range is itself and the ranges of its two children. So nothing here goes down a tree,
-// which could be as deep as a pack is long.
+// is known, and an inner node's range is itself and the ranges of its two children. So no check descends a tree,
+// which could be as deep as the pack is long.
 #include "pack_checks_bvh.h"
 
 #include <algorithm>
@@ -18,7 +18,8 @@
 namespace chandelier::pack {
 namespace {
 
-/// How far a node's area may be from the sum of its children's, as a part of it: writers may round each to 11 bits.
+/// How far a node's area may differ from the sum of its children's, as a fraction of it: writers may round each to 11
+/// bits.
 constexpr double area_tolerance = 1e-3;
 
 bool is_ordered(const glm::vec3& low, const glm::vec3& high) {
@@ -33,13 +34,13 @@ bool holds(const BvhNode& outer, const BvhNode& inner) {
   return holds(outer, inner.bounds_min, inner.bounds_max);
 }
 
-/// The nodes of one section, of which trees are parts.
+/// The nodes of one section, which may hold several trees.
 struct Trees {
   const char* name;
   const char* items_name;
   std::span<const BvhNode> nodes;
   uint64_t item_count;
-  uint64_t next_item = 0;  // after the leaves so far
+  uint64_t next_item = 0;  // the item after those of the leaves so far
 };
 
 std::string leaf_fault(Trees& trees, uint32_t number) {
@@ -56,7 +57,7 @@ std::string leaf_fault(Trees& trees, uint32_t number) {
          trees.items_name;
 }
 
-/// Of an inner node of a tree that ends at `end`.
+/// The fault of an inner node of a tree that ends at `end`.
 std::string children_fault(const Trees& trees, uint32_t number, uint32_t end) {
   const BvhNode& node = trees.nodes[number];
   if (node.skip <= number + 1 || node.skip > end) {
@@ -77,7 +78,8 @@ std::string children_fault(const Trees& trees, uint32_t number, uint32_t end) {
   return {};
 }
 
-/// Of the tree whose nodes are `first` to `end`, at least one. Its leaves' items are the next ones.
+/// The fault of the tree whose nodes are `first` to `end`, at least one. The items of its leaves must follow those of
+/// the trees before.
 std::string tree_fault(Trees& trees, uint32_t first, uint32_t end) {
   if (trees.nodes[first].skip != end) {
     return at(trees.name, first) + ".skip: " + text(trees.nodes[first].skip) + " where its tree ends at " + text(end);
@@ -94,7 +96,7 @@ std::string tree_fault(Trees& trees, uint32_t first, uint32_t end) {
   return {};
 }
 
-/// Of a section that is one tree.
+/// The fault of a section that is one tree.
 std::string single_tree_fault(Trees trees) {
   if (!trees.nodes.empty()) {
     std::string line = tree_fault(trees, 0, static_cast<uint32_t>(trees.nodes.size()));
@@ -105,7 +107,7 @@ std::string single_tree_fault(Trees trees) {
          text(trees.next_item);
 }
 
-/// Each of what can be an item once: `is_wanted[n]` says whether n is one.
+/// Checks that each n with `is_wanted[n]` is an item exactly once.
 template <typename Ref>
 std::string items_fault(const char* name, std::span<const Ref> items, uint32_t Ref::*number, const std::string& field,
                         const char* wanted, std::vector<bool> is_wanted) {
@@ -170,15 +172,15 @@ std::string instance_bvh_fault(const View& view) {
                      "static instances with batches", std::move(is_wanted));
 }
 
-/// Of the items from `first` to `end`, which must be the triangles of the mesh's batches. `is_open` has no bit set
-/// before and after.
+/// The fault of the items from `first` to `end`, which must be the triangles of the mesh's batches. All bits of
+/// `is_open` are clear before and after.
 std::string triangles_fault(const View& view, size_t m, uint64_t first, uint64_t end, std::vector<bool>& is_open) {
   const Mesh& mesh = view.meshes[m];
   uint64_t triangles = 0;
   for (uint32_t b = mesh.first_batch; b < mesh.first_batch + mesh.batch_count; ++b) {
     const Batch& batch = view.batches[b];
     triangles += batch.index_count / 3;
-    if (triangles > end - first) break;  // before more work than the mesh's nodes pay for
+    if (triangles > end - first) break;  // limits the work to the number of items
     const auto begin = is_open.begin() + batch.first_index / 3;
     std::fill(begin, begin + batch.index_count / 3, true);
   }

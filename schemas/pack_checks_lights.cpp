@@ -11,7 +11,7 @@
 namespace chandelier::pack {
 namespace {
 
-/// The light itself is in its bounds, as what it lights begins there; only rounding may put it outside.
+/// The bounds must contain the light itself, where the volume that it lights begins; only rounding may put it outside.
 bool holds_its_light(const Light& light) {
   double distance2 = 0, most = std::abs(double{light.bounds_radius_m});
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The codecs of sections and images. What is coded is a row of zstd frames, one for each codec_chunk_bytes of records.
+// The codecs of sections and images. The encoded bytes are a sequence of zstd frames, one for each codec_chunk_bytes of
+// records.
 #include "pack_codec.h"
 
 #include <zstd.h>
@@ -38,7 +39,7 @@ struct Release {
 using Compressor = std::unique_ptr<ZSTD_CCtx, Release<ZSTD_CCtx, ZSTD_freeCCtx>>;
 using Decompressor = std::unique_ptr<ZSTD_DCtx, Release<ZSTD_DCtx, ZSTD_freeDCtx>>;
 
-/// One frame that says its content's size.
+/// Compresses into one frame that states its content's size.
 std::vector<std::byte> compress(Bytes content, int level) {
   thread_local const Compressor context(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
@@ -72,7 +73,7 @@ std::span<const uint32_t> words_of(Bytes bytes) {
 
 /// A section or an image that is being encoded.
 struct Coding {
-  size_t place;  // of what is returned
+  size_t place;  // index into the result
   bool holds_corners;
   Bytes records;
   size_t stride;
@@ -169,11 +170,11 @@ std::string decode_chunk(const Coded& each, Bytes frame, std::span<std::byte> re
 
 /// One frame to decode.
 struct Task {
-  size_t number, chunk;  // of what is coded, and in it
+  size_t number, chunk;  // index of the section or image, and of the frame in it
   Bytes frame;
 };
 
-/// Appends the frames, one a chunk, which must fill what is stored.
+/// Appends the frames, one per chunk. They must fill the stored bytes.
 std::string find_frames(const Coded& each, size_t number, std::vector<Task>& tasks) {
   const size_t chunks = chunk_count(each.records.size() / each.stride_bytes, each.stride_bytes);
   Bytes rest = each.stored;
@@ -189,7 +190,7 @@ std::string find_frames(const Coded& each, size_t number, std::vector<Task>& tas
   return rest.empty() || filler ? "" : "bytes after the last frame";
 }
 
-/// Encodes in threads; gives `count` results.
+/// Encodes in parallel and returns `count` results.
 std::vector<Encoded> encode(std::vector<Coding> codings, size_t count, size_t most_threads) {
   parallel_for(codings.size(), most_threads, [&](size_t i) {
     Coding& coding = codings[i];

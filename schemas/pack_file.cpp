@@ -190,7 +190,7 @@ std::string wrong(const char* field, uint64_t is, uint64_t must_be) {
   return std::string(field) + ": " + std::to_string(is) + " where " + std::to_string(must_be) + " must be";
 }
 
-/// Checks an entry whose section must start at `offset`. `info` is what its kind should be like.
+/// Checks an entry whose section must start at `offset`. `info` describes what is expected of its kind.
 std::string entry_fault(const SectionEntry& entry, const SectionInfo& info, uint64_t offset, uint64_t file_bytes) {
   if (!is_valid(entry.codec)) {
     return "codec: " + std::to_string(static_cast<uint32_t>(entry.codec)) + " is no Codec";
@@ -323,7 +323,7 @@ Writer::Writer(const std::filesystem::path& path, const Contents& contents, Comp
     : file_(path), size_bytes_(write_all(file_, view_of(contents), compression, most_threads)) {
   try {
     syncing_ = std::async(std::launch::async, [this] { file_.sync(); });
-  } catch (const std::system_error&) {  // no thread to be had: sync() does it
+  } catch (const std::system_error&) {  // no thread is available: sync() does it
   }
 }
 

@@ -32,7 +32,7 @@ size_t triangle_code_bound(size_t) {
 
 namespace {
 
-// Of any vertex number: the library takes it for the longest number that its code may need.
+// Allows any vertex number. The library computes the longest code of a number from it.
 constexpr size_t vertices = 0xFFFFFFFF;
 
 /// Calls `visit(triangle, turn)` with the turn that the code gives each triangle: corner k of the input is corner

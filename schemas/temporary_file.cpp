@@ -75,7 +75,7 @@ bool TemporaryFile::create(const std::filesystem::path& folder) {
 
 TemporaryFile::~TemporaryFile() {
   if (descriptor_ < 0) return;
-  unlink(temporary_.c_str());  // before the lock goes: nobody else takes the name in between
+  unlink(temporary_.c_str());  // before the lock is released, so that nobody else takes the name in between
   close(descriptor_);
 }
 

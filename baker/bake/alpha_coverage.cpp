@@ -11,17 +11,17 @@
 namespace chandelier::baker {
 namespace {
 
-/// The least 8-bit alpha that a shader's test lets through; 256 where none is.
+/// The smallest 8-bit alpha that passes a shader's alpha test; 256 if none passes.
 int first_passing_code(float cutoff) {
   int code = 0;
   while (code < 256 && static_cast<float>(code) / 255.0f < cutoff) ++code;
   return code;
 }
 
-/// The threshold between texels that shall pass and the others.
+/// The threshold between the texels that must pass and the others.
 struct Threshold {
-  float passing;  // the least that passes; infinity: none
-  float failing;  // the greatest that does not; -infinity: all pass
+  float passing;  // the smallest alpha that passes; infinity: none passes
+  float failing;  // the largest alpha that fails; -infinity: all pass
 };
 
 Threshold find_threshold(std::vector<float> alphas, size_t count) {
@@ -54,13 +54,13 @@ std::vector<uint8_t> with_coverage(const std::vector<float>& alphas, float cutof
   const int first = first_passing_code(cutoff);
   const auto count = static_cast<size_t>(std::llround(coverage * static_cast<double>(alphas.size())));
   const Threshold threshold = find_threshold(alphas, count);
-  float scale = 1;  // as little as will do
+  float scale = 1;  // changed as little as necessary
   if (threshold.passing > 0 && threshold.passing < cutoff) scale = cutoff / threshold.passing;
   if (threshold.failing >= cutoff) scale = cutoff / threshold.failing;
   std::vector<uint8_t> out(alphas.size());
   for (size_t i = 0; i < alphas.size(); ++i) {
     const int code = static_cast<int>(std::clamp(alphas[i] * scale, 0.0f, 1.0f) * 255.0f + 0.5f);
-    const bool passes = alphas[i] >= threshold.passing;  // and rounding shall not change that
+    const bool passes = alphas[i] >= threshold.passing;  // rounding must not change this
     out[i] = static_cast<uint8_t>(passes ? std::max(code, first) : std::min(code, first - 1));
   }
   return out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pass: what moves, with its keys and its bind pose.
+// Pass: animated nodes, their animations and their skins.
 #pragma once
 
 #include "../scene.h"
@@ -8,8 +8,8 @@
 
 namespace chandelier::baker {
 
-/// Fills nodes, animations, animation_channels, animation_times, animation_values, skins and joints. Channels that
-/// follow each other and have the same times share them. Throws Error.
+/// Fills nodes, animations, animation_channels, animation_times, animation_values, skins and joints. Consecutive
+/// channels with equal times share one copy of the times. Throws Error.
 void make_animations(const Scene& scene, Strings& strings, pack::Contents& pack);
 
 }  // namespace chandelier::baker

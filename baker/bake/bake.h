@@ -17,7 +17,7 @@
 namespace chandelier::baker {
 
 struct BakeSettings {
-  uint32_t batch_triangles = 100;                               // most in a batch; a multiple of 4, up to 512
+  uint32_t batch_triangles = 100;                               // largest number per batch; a multiple of 4, up to 512
   float range_threshold_lx = pack::default_range_threshold_lx;  // where a light without a range of its own ends
   float position_error_m = 0.0005f;  // largest distance that a vertex may move in the world; 0 keeps floats
   int normal_bits = 10;              // of each of a normal's and a tangent's two numbers, 8 to 16
@@ -28,8 +28,8 @@ struct BakeSettings {
   bool glass_shadows = false;  // glass casts shadows too
 };
 
-/// Runs all passes and notes each in `report`; uses the entries of `cache`, if there is one. The same scene and
-/// settings give the same contents, whatever the number of threads. Call check() on them afterwards. Throws Error.
+/// Runs all passes and records each in `report`. Uses `cache`, if there is one. The same scene and settings give the
+/// same contents, whatever the number of threads. Call check() on them afterwards. Throws Error.
 pack::Contents bake(Scene&& scene, const BakeSettings& settings, const Progress& progress, Report& report,
                     Warnings& warnings, Cache* cache = nullptr);
 

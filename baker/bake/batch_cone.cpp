@@ -10,7 +10,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr double widest = 0.1;        // least cosine of θ: beyond, the cone would hardly ever cull
+constexpr double widest = 0.1;        // smallest cosine of θ; a wider cone would hardly ever cull
 constexpr double margin = 1e-4;       // on the cutoff, for a test in floats
 constexpr double apex_margin = 1e-5;  // of the size of the coordinates, for an apex in floats
 
@@ -28,7 +28,7 @@ NormalCone normal_cone(std::span<const glm::vec3> corners) {
     low = glm::min(low, glm::dvec3(corner)), high = glm::max(high, glm::dvec3(corner));
   const double length = glm::length(sum);
   if (!(length > 1e-6) || !std::isfinite(length)) return {};
-  const glm::vec3 axis = glm::vec3(sum / length);  // as the pack has it
+  const glm::vec3 axis = glm::vec3(sum / length);  // rounded as in the pack
 
   const glm::dvec3 center = 0.5 * low + 0.5 * high;
   double least = 1, back = -INFINITY;  // cosine of θ; how far behind the centre the apex must be

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normal cone of a batch: the eyes from which all of its triangles are seen from the back.
+// The normal cone of a batch: the eye positions from which all triangles of the batch are back-facing.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -7,11 +7,11 @@
 
 namespace chandelier::baker {
 
-/// As pack::Batch has it: seen from an eye with dot(normalize(apex − eye), axis) ≥ cutoff, no triangle shows its front.
+/// The fields of pack::Batch: all triangles are back-facing for an eye with dot(normalize(apex − eye), axis) ≥ cutoff.
 struct NormalCone {
   glm::vec3 apex{0};
   glm::vec3 axis{0};
-  float cutoff = 1;  // 1, with a zero axis: never
+  float cutoff = 1;  // 1, with a zero axis: the cone never culls
 };
 
 /// `corners`: three of each triangle, counter-clockwise from its front; each triangle has an area.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closed triangles and open ones in batches of their own; then triangles within a batch for the vertex cache, and
-// vertices in the order of their use.
+// Closed and open triangles get separate batches. Then the triangles of each batch are ordered for the vertex cache,
+// and the vertices by first use.
 #include "batch_cut.h"
 
 #include <meshoptimizer.h>
@@ -69,7 +69,7 @@ class BatchOrderer {
 };
 
 void order_within_batches(CutPrimitive& cut) {
-  constexpr size_t batches = 64;  // a task
+  constexpr size_t batches = 64;  // per task
   std::vector<size_t> first(cut.batch_counts.size() + 1, 0);
   for (size_t b = 0; b < cut.batch_counts.size(); ++b) first[b + 1] = first[b] + 3 * cut.batch_counts[b];
   tbb::parallel_for(size_t{0}, (cut.batch_counts.size() + batches - 1) / batches, [&](size_t task) {

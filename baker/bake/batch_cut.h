@@ -9,12 +9,12 @@
 namespace chandelier::baker {
 
 struct CutPrimitive {
-  std::vector<PackedVertex> vertices;     // as they came
-  std::vector<SkinVertex> skin_vertices;  // as they came
-  std::vector<uint32_t> vertex_order;     // numbers of `vertices`, as the batches use them first
-  std::vector<uint32_t> indices;          // into vertex_order, batch after batch
-  std::vector<uint32_t> batch_counts;     // of triangles, per batch
-  size_t closed_batches = 0;              // the first ones
+  std::vector<PackedVertex> vertices;     // in the given order
+  std::vector<SkinVertex> skin_vertices;  // in the given order
+  std::vector<uint32_t> vertex_order;     // numbers of `vertices`, in the order of first use
+  std::vector<uint32_t> indices;          // into vertex_order, sorted by batch
+  std::vector<uint32_t> batch_counts;     // of triangles, of each batch
+  size_t closed_batches = 0;              // how many of the first batches are closed
   uint32_t material = 0;
 };
 

@@ -20,10 +20,10 @@ using namespace sah;
 
 using Boxes = std::span<BvhItem>;
 
-constexpr size_t parallel_split = 8192;  // triangles, from which on two threads go on
-constexpr size_t samples = 4096;         // of a group of twice as many triangles or more
-constexpr double batch_cost = 0.5;       // of testing and drawing a batch, in full batches' triangles
-constexpr float batch_begin = 1;         // what area_m2 says of a batch's first triangle
+constexpr size_t parallel_split = 8192;  // triangles; the two sides of larger groups are split by two threads
+constexpr size_t samples = 4096;         // triangles sampled from a group of at least twice as many
+constexpr double batch_cost = 0.5;       // of testing and drawing a batch, relative to the triangles of a full batch
+constexpr float batch_begin = 1;         // value of area_m2 that marks the first triangle of a batch
 
 /// `left` triangles go left: those of the bins below `bin`, and if that is not enough, the lowest centres of `bin`.
 struct Split {
@@ -32,7 +32,7 @@ struct Split {
   double cost = INFINITY;
 };
 
-/// Of a group of triangles, per area.
+/// The expected cost of a group of triangles, per unit of area.
 double weight(size_t triangles, size_t most) {
   const size_t batches = (triangles + most - 1) / most;
   return static_cast<double>(triangles) + batch_cost * static_cast<double>(batches * most);
@@ -76,13 +76,13 @@ Split find_split(Boxes boxes, const Binning& binning, size_t stride, size_t most
   return best;
 }
 
-/// Two groups, and what the centres of each span.
+/// Two groups, and the bounds of the centres of each.
 struct Halves {
   size_t left = 0;
   Box left_centres, right_centres;
 };
 
-/// Puts the left side first.
+/// Moves the triangles of the left side to the front.
 Halves part(Boxes boxes, const Binning& binning, const Split& split, bool sampled) {
   Halves out;
   out.left = partition(boxes, binning, split.axis, split.bin, out.left_centres, out.right_centres);
@@ -107,7 +107,7 @@ Halves halve(Boxes boxes, const Box& centres, size_t most) {
   }
   const Split split = find_split(boxes, binning, 1, most);
   if (split.axis >= 0) return part(boxes, binning, split, false);
-  // All centres in one place, or areas beyond a float: halves of whole batches, as they come.
+  // All centres coincide, or areas overflow a float: splits into halves of whole batches, in the given order.
   return {((boxes.size() + most - 1) / most + 1) / 2 * most, centres, centres};
 }
 

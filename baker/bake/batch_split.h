@@ -13,11 +13,11 @@ namespace chandelier::baker {
 BvhItem triangle_box(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, uint32_t triangle);
 
 struct BatchOrder {
-  std::vector<uint32_t> triangles;  // numbers of all triangles, batch after batch, neighbours near each other
+  std::vector<uint32_t> triangles;  // numbers of all triangles, sorted by batch; neighbours are near each other
   std::vector<uint32_t> counts;     // of triangles, per batch
 };
 
-/// Batches of at most `most` triangles. The same on any number of threads.
+/// Splits triangles into batches of at most `most`. The result does not depend on the number of threads.
 BatchOrder split_into_batches(std::vector<BvhItem>&& boxes, size_t most);
 
 }  // namespace chandelier::baker

@@ -15,7 +15,7 @@ namespace {
 /// The position of a primitive in the pack's sections.
 struct Place {
   size_t vertex = 0, skin_vertex = 0;
-  bool skinned = false;  // the mesh is
+  bool skinned = false;  // whether a skin bends the mesh
   struct Copy {
     bool wanted = false;
     size_t index = 0, batch = 0;
@@ -133,7 +133,7 @@ std::vector<std::vector<Place>> find_places(const std::vector<std::vector<CutPri
   return places;
 }
 
-/// A mesh's record, for one of its copies; without batches where none is wanted.
+/// The record of one copy of a mesh; it has no batches if the copy is not needed.
 pack::Mesh mesh_record(const std::vector<CutPrimitive>& cuts, const std::vector<Place>& places, int copy,
                        const pack::Contents& pack) {
   pack::Mesh record;

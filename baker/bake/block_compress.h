@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RGBA8 into blocks of 4×4 texels that GPUs sample as they are.
+// Compresses RGBA8 into blocks of 4×4 texels that GPUs sample directly.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct Blocks {
   uint64_t values = 0;         // their number; colours that alpha 0 hides do not count
 };
 
-/// ⌈size / 4⌉ blocks a side; one that hangs over the edge is fitted to the texels inside. Same blocks on any number of
-/// threads.
+/// Makes ⌈size / 4⌉ blocks per side. A block that extends past the edge is fitted to the texels inside the image. The
+/// result does not depend on the number of threads.
 Blocks compress_blocks(const Texels& texels, BlockFormat format);
 
 }  // namespace chandelier::baker

@@ -24,12 +24,12 @@ namespace {
 using namespace sah;
 
 constexpr float traversal_cost = 1;       // of a node, where an item costs 1
-constexpr size_t most_tried = 5;          // up to here, every way to share the items out is tried
-constexpr size_t block_nodes = 16384;     // that one thread writes
-constexpr size_t parallel_items = 16384;  // from here on, a node's two sides are built by two threads
-constexpr size_t samples = 2048;          // of a node with twice as many items or more, to choose its cut from
-constexpr size_t treelet_items = 32;      // most of a treelet
-constexpr int sah_depth = 64;             // below, nodes are cut into halves, so that no input makes a tree of a path
+constexpr size_t most_tried = 5;          // items; up to this many, all partitions are tried
+constexpr size_t block_nodes = 16384;     // nodes that one task writes
+constexpr size_t parallel_items = 16384;  // items; the two sides of larger nodes are built by two threads
+constexpr size_t samples = 2048;          // items sampled to choose the cut of a node with at least twice as many
+constexpr size_t treelet_items = 32;      // largest number of items in a treelet
+constexpr int sah_depth = 64;             // deeper nodes are cut into halves, so that no input makes a degenerate tree
 
 struct Cut {
   int axis = -1;          // none
@@ -63,7 +63,7 @@ Cut find_cut(std::span<const BvhItem> items, const Binning& binning, size_t stri
   return best;
 }
 
-/// How many items, brought to the front, the first child gets; 0 for a leaf of up to `most_leaf` items.
+/// Moves the items of the first child to the front and returns their number; 0 for a leaf of up to `most_leaf` items.
 size_t cut(std::span<BvhItem> items, size_t most_leaf, const Box& centres, int depth, Box& left, Box& right) {
   const Binning binning(centres, std::min(most_bins, 4 + items.size() / 16));
   Cut best;
@@ -79,7 +79,7 @@ size_t cut(std::span<BvhItem> items, size_t most_leaf, const Box& centres, int d
   return items.size() / 2;
 }
 
-/// The best of all ways to give up to most_tried items to two children, or to one leaf.
+/// The best of all partitions of up to most_tried items into two children, or one leaf.
 void add_few(std::span<BvhItem> items, size_t most_leaf, BvhShape& shape) {
   const unsigned all = (1u << items.size()) - 1;
   std::array<Bin, 1u << most_tried> sets;  // by the bits of their items
@@ -149,7 +149,7 @@ void add_treelets(std::span<BvhItem> items, uint32_t first_item, const Box& cent
   out.node_counts.push_back(static_cast<uint32_t>(out.shape.size() - nodes));
 }
 
-/// Where a treelet comes from, and where it goes.
+/// The source and the destination of a treelet.
 struct TreeletMove {
   uint32_t from_item, items;
   const uint8_t* from_shape;
@@ -170,16 +170,17 @@ std::vector<TreeletMove> list(std::span<const Treelets> parts, std::vector<BvhIt
   return moves;
 }
 
-/// Writes the nodes of one tree: in blocks at once, backwards in each, so that children come before their parents.
+/// Writes the nodes of one tree. Blocks are written in parallel, each of them backwards, so that children come before
+/// their parents.
 struct Filler {
   std::span<const BvhItem> items;
-  std::span<const uint32_t> order;  // of items in the leaves; none where they are in order
+  std::span<const uint32_t> order;  // of the items in the leaves; empty if the items are sorted
   const BvhShape& shape;
   BvhPlace place;
   std::span<pack::BvhNode> nodes;
   std::span<pack::NodeArea> areas;
 
-  /// `item`: the leaf's first, counted in the tree.
+  /// `item`: the first of the leaf, counted within the tree.
   void fill_leaf(uint32_t number, uint32_t item, uint32_t count) const {
     // A treelet's items, and so a leaf's, are side by side in either order.
     const std::span<const BvhItem> own = items.subspan(order.empty() ? item : order[item], count);
@@ -194,7 +195,8 @@ struct Filler {
     if (!areas.empty()) areas[number].area_m2 = area_m2;
   }
 
-  /// False, and nothing done, where a child is not below `end` or not there yet: every node's skip is above 0.
+  /// Does nothing and returns false if a child is not below `end` or not written yet. The skip of a written node is
+  /// above 0.
   bool fill_inner(uint32_t number, uint32_t end) const {
     if (number + 1 >= end) return false;
     const pack::BvhNode& left = nodes[number + 1];
@@ -207,7 +209,8 @@ struct Filler {
     return true;
   }
 
-  /// Nodes first to end of the tree, whose items end with `item`; returns those whose children are not all among them.
+  /// Writes the nodes from `first` to `end` of the tree; their items end at `item`. Returns the nodes that have a child
+  /// outside of that range.
   std::vector<uint32_t> fill_block(size_t first, size_t end, uint32_t item) const {
     std::vector<uint32_t> left_open;
     const auto number_of = [&](size_t i) { return place.first_node + static_cast<uint32_t>(i); };
@@ -222,12 +225,12 @@ struct Filler {
     return left_open;
   }
 
-  /// Sums beyond a float end at the greatest.
+  /// Sums that overflow a float become the largest float.
   static float add_areas(float a, float b) { return std::min(a + b, std::numeric_limits<float>::max()); }
 };
 
-/// To 10 bits behind the first, which compresses well: areas are estimates for points, and each is off by 2^-11 at
-/// most.
+/// Rounds to 11 significant bits, which compress well. Areas are estimates for points; the relative error is at most
+/// 2^-11.
 float rounded(float area_m2) {
   constexpr uint32_t dropped = (1u << 13) - 1;
   const auto bits = std::bit_cast<uint32_t>(area_m2) + dropped / 2 + 1;
@@ -263,7 +266,7 @@ BvhShape join_treelets(std::span<const Treelets> parts, std::vector<uint32_t>& o
   node = item = 0;
   for (const uint8_t of_top : top) {
     if (of_top == 0) {
-      ++node;  // an inner node: zero is there
+      ++node;  // an inner node
       continue;
     }
     TreeletMove& move = moves[boxes[leaf++].number];
@@ -302,7 +305,7 @@ void fill_bvh(std::span<const BvhItem> items, std::span<const uint32_t> order, c
   if (areas.empty()) return;
   tbb::parallel_for(tbb::blocked_range<size_t>(0, shape.size(), block_nodes), [&](const auto& range) {
     for (pack::NodeArea& area : areas.subspan(place.first_node + range.begin(), range.size())) {
-      area.area_m2 = rounded(area.area_m2);  // sums first, so that errors do not add up
+      area.area_m2 = rounded(area.area_m2);  // after summing, so that errors do not add up
     }
   });
 }

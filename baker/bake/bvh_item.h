@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hierarchies are built over, and batches made of.
+// The items that hierarchies and batches are built from.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace chandelier::baker {
 
-/// What a hierarchy is built over: a box, whose it is, and a triangle's area. Without a constructor, so that arrays of
-/// many are first touched by the threads that fill them.
+/// An item of a hierarchy: a box, the number of its owner, and a triangle's area. It has no constructor, so that the
+/// memory of large arrays is first touched by the threads that fill it.
 struct BvhItem {
   glm::vec3 low;
   uint32_t number;

@@ -36,7 +36,7 @@ uint64_t drop_degenerate(PackedPrimitive& primitive, bool rigid) {
   return count - kept;
 }
 
-/// Drops those of a primitive's triangles that `first` numbers below themselves; they are counted from `base`.
+/// Drops the triangles of a primitive for which `first` names an earlier triangle. They are numbered from `base`.
 uint64_t drop_repeated(PackedPrimitive& primitive, const std::vector<uint32_t>& first, size_t base) {
   const size_t count = primitive.triangle_count();
   size_t kept = 0;
@@ -95,12 +95,12 @@ uint32_t hash_of(const glm::vec3& position) {
   return hash_words(words, 3);
 }
 
-/// What an alpha test reads.
+/// What an alpha test depends on.
 bool has_equal_alpha(const pack::VertexAttributes& a, const pack::VertexAttributes& b) {
   return a.uv0 == b.uv0 && a.uv1 == b.uv1 && a.color == b.color;
 }
 
-/// Like places_of, but in masked primitives vertices differ too where an alpha test may tell them apart.
+/// Like places_of, but in masked primitives vertices also differ if an alpha test may give different results for them.
 std::vector<uint32_t> corners_of(const PackedMesh& mesh, const std::vector<Material>& materials) {
   const Vertices vertices(mesh);
   const auto is_masked = [&](size_t i) { return materials[mesh.primitives[vertices.primitive_of(i)].material].masked; };

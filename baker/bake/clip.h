@@ -26,13 +26,13 @@ using ClipPolygon = std::vector<ClipVertex>;  // convex
 /// Splits a polygon in two at a plane that crosses it; corners in the plane come into both.
 void split(const ClipPolygon& polygon, int axis, double plane, ClipPolygon& below, ClipPolygon& above);
 
-/// Cuts triangles to cells; keeps its memory between them.
+/// Cuts triangles at the borders of cells; reuses its memory for the next triangle.
 class Clipper {
  public:
   explicit Clipper(const Grid& grid) : grid_(grid) {}
 
-  /// Calls emit(cell, polygon) for each cell that holds a part of the triangle. Cells are half open: what lies in a
-  /// plane between two is in the upper one alone, unless it is the border of something below.
+  /// Calls emit(cell, polygon) for each cell that holds a part of the triangle. Cells are half open: a polygon in the
+  /// plane between two cells is in the upper one alone. The border of a part in the lower cell stays there.
   template <typename Emit>
   void cut(const std::array<ClipVertex, 3>& triangle, Emit emit) {
     parts_[0].assign(triangle.begin(), triangle.end());
@@ -66,16 +66,16 @@ class Clipper {
 
   const Grid& grid_;
   glm::ivec3 cell_{0};
-  std::array<ClipPolygon, 4> parts_;  // still to be cut along x, y, z, and what is done
+  std::array<ClipPolygon, 4> parts_;  // to be cut along x, y and z; the last is finished
   ClipPolygon above_;
 };
 
-/// Vertices, equal ones once, in the order of their first occurrence.
+/// Distinct vertices, in the order of their first occurrence.
 class UniqueVertices {
  public:
-  /// Makes it empty, with room for this many.
+  /// Removes all vertices and makes room for this many.
   void reset(size_t most_vertices);
-  /// The number of the vertex that equals this one, which is appended where there is none.
+  /// Returns the number of the equal vertex; appends `vertex` if there is none.
   uint32_t add(const pack::VoxelVertex& vertex);
   const std::vector<pack::VoxelVertex>& vertices() const { return vertices_; }
 

@@ -25,7 +25,7 @@ struct Neighbours {
   float share;
 };
 
-/// Around the centre of texel `at` of `to` in a side of `from` texels, within it.
+/// The neighbours of the centre of texel `at` of `to`, in a side of `from` texels, clamped to it.
 Neighbours neighbours(uint32_t at, uint32_t to, uint32_t from) {
   const double place = (at + 0.5) * from / to - 0.5, below = std::floor(place);
   const auto clamped = [&](double texel) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two images of a specular-glossiness material into those of a metallic-roughness one.
+// Converts the two images of a specular-glossiness material to those of a metallic-roughness material.
 #pragma once
 
 #include "../scene.h"
@@ -12,7 +12,7 @@ struct MetallicTexels {
   Texels metallic_roughness;  // G roughness, B metallic
 };
 
-/// Texel by texel, in the larger size of the two images; the other is interpolated. Either may be absent.
+/// Converts texel by texel in the size of the larger image; the other one is interpolated. Either may be absent.
 MetallicTexels convert_texels(const SpecularGlossiness& factors, const Texels* diffuse, const Texels* glossy);
 
 }  // namespace chandelier::baker

@@ -81,7 +81,7 @@ DecodedImage decode_file(const Bytes& bytes, ImageFormat format, const std::stri
   return decoded;
 }
 
-/// OpenImageIO multiplies a WebP's colours by its alpha, whatever it is asked for. So they come from a copy without.
+/// OpenImageIO always multiplies a WebP's colours by its alpha. So the colours are decoded from a copy without alpha.
 DecodedImage decode_webp(const EncodedImage& image) {
   DecodedImage decoded = decode_file(image.bytes, ImageFormat::webp, image.where);
   if (decoded.channels != 4 || !decoded.fault.empty()) return decoded;

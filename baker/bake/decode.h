@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG, JPEG and WebP bytes into texels.
+// Decodes PNG, JPEG and WebP files into texels.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace chandelier::baker {
 
-/// Throws Error above 16384 texels, or below 1.
+/// Throws Error unless both sides are 1 to 16384 texels.
 void check_image_size(int64_t width, int64_t height, const std::string& where);
 
-/// An image, and the damage of its file if something is still visible, as in viewers. Part of the texels may then be
-/// filled in.
+/// A decoded image. `damage` says what is wrong with a file of which only a part could be decoded; the other texels are
+/// filled in, as image viewers do.
 struct DecodedTexels {
   Texels texels;
   std::string damage;
 };
 
-/// Throws Error for what is neither PNG, JPEG nor WebP, cannot be decoded or is too large.
+/// Throws Error if the file is neither PNG, JPEG nor WebP, cannot be decoded or is too large.
 DecodedTexels decode_image(const EncodedImage& image);
 
-/// The file of the decoder module, byte for byte: equal modules decode alike. Empty if it is missing.
+/// The bytes of the decoder module's file, for cache keys: equal modules decode alike. Empty if it is missing.
 const std::string& decoder_code();
 
-/// Of a file of any of the three formats.
+/// The size in the header of a file of any of the three formats.
 ClaimedSize claimed_size(const EncodedImage& image);
 
 }  // namespace chandelier::baker

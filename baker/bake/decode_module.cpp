@@ -56,7 +56,7 @@ DecodedImage decode(const std::vector<uint8_t>& file, ImageFormat format, int64_
   if (!in_range(out.width, max_size) || !in_range(out.height, max_size) || !in_range(out.channels, 4)) return out;
   out.values.resize(static_cast<size_t>(out.width * out.height * out.channels));
   const bool read = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, out.values.data());
-  // libjpeg goes on with grey after damage, and only warns: the reader keeps its warnings as its error.
+  // After damage, libjpeg fills the rest with grey and only warns. The reader keeps the warning as its error.
   if (!read) {
     out.fault = first_line(input->geterror(), format);
   } else if (input->has_error()) {

@@ -15,12 +15,12 @@ enum class ImageFormat { png, jpeg, webp };
 struct DecodedImage {
   int64_t width = 0, height = 0;
   int channels = 0;
-  std::vector<uint8_t> values;  // as stored: rows from the top, not premultiplied, but for WebP's alpha
-  std::string fault;            // why there are none, in OpenImageIO's words; or nothing
-  std::string damage;           // what the decoder noticed and went on after, likewise
+  std::vector<uint8_t> values;  // rows from the top, as stored, not premultiplied (WebP with alpha is)
+  std::string fault;            // OpenImageIO's message if there are no values, else empty
+  std::string damage;           // OpenImageIO's message about damage that it tolerated, else empty
 };
 
-/// Decodes a whole file. There are no values if a side is not 1 to `max_size` or channels are not 1 to 4.
+/// Decodes a whole file. `values` is empty if a side is not 1 to `max_size`, or if there are not 1 to 4 channels.
 using DecodeFunction = DecodedImage (*)(const std::vector<uint8_t>& file, ImageFormat format, int64_t max_size);
 
 /// The only thing that the module exports: a DecodeFunction under this name.

@@ -13,7 +13,7 @@
 
 namespace chandelier::baker {
 
-/// Calls `visit` with each image that holds the bytes of an image: itself, or those that it is converted from.
+/// Calls `visit` with each image whose bytes an image is decoded from: itself, or those that it is converted from.
 template <typename Visit>
 void for_each_source(const Scene& scene, uint32_t image, Visit visit) {
   const std::optional<SpecularGlossiness>& from = scene.images[image].converted_from;
@@ -23,14 +23,14 @@ void for_each_source(const Scene& scene, uint32_t image, Visit visit) {
   }
 }
 
-/// Texels that decoding an image has in memory at a time, as the headers of its sources claim.
+/// The number of texels in memory while an image is decoded, according to the headers of its sources.
 uint64_t claimed_texels(const Scene& scene, uint32_t image);
 
-/// Texels as a colour and as anything else: two images only where they are converted.
+/// Texels for use as colour and for all other uses. `data` is set only if the image is converted from others.
 struct SceneTexels {
   Texels color;
   std::optional<Texels> data;
-  std::vector<std::string> damage;  // of each source, in their order, as DecodedTexels has it
+  std::vector<std::string> damage;  // of each source, in order; see DecodedTexels
 
   const Texels& as(ImageUse use) const {
     const bool is_color = use == ImageUse::color || use == ImageUse::masked_color;

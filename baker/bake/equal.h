@@ -12,8 +12,9 @@
 
 namespace chandelier::baker {
 
-/// For each of `count` elements the number of the first that equals it. `hash(i)` is 32 bits, of which all must count;
-/// `equal(i, j)` decides. Elements are dealt by their hash to tables that fit a cache, a task each, in ascending order.
+/// Returns for each of `count` elements the number of the first element that equals it. `hash(i)` must use all of its
+/// 32 bits; `equal(i, j)` decides. Elements are distributed by hash to tables that fit the cache, one task per table,
+/// in ascending order.
 template <typename Hash, typename Equal>
 std::vector<uint32_t> first_equal(size_t count, Hash hash, Equal equal) {
   constexpr uint32_t empty_slot = 0xFFFFFFFFu;
@@ -24,7 +25,7 @@ std::vector<uint32_t> first_equal(size_t count, Hash hash, Equal equal) {
   const int shift = 32 - std::clamp(static_cast<int>(std::bit_width(count / table_elements)), 0, 12);
   const auto table_of = [&](uint32_t h) { return shift == 32 ? 0 : h >> shift; };
 
-  std::vector<uint32_t> first(count);  // the hashes, until they are dealt
+  std::vector<uint32_t> first(count);  // holds the hashes until they are distributed
   tbb::parallel_for(size_t{0}, (count + 4095) / 4096, [&](size_t block) {
     for (size_t i = block * 4096; i < std::min(count, block * 4096 + 4096); ++i) first[i] = hash(i);
   });
@@ -35,7 +36,7 @@ std::vector<uint32_t> first_equal(size_t count, Hash hash, Equal equal) {
   for (size_t i = 0; i < count; ++i) dealt[end[table_of(first[i])]++] = {first[i], static_cast<uint32_t>(i)};
 
   tbb::parallel_for(size_t{0}, end.size() - 1, [&](size_t t) {
-    const size_t begin = t == 0 ? 0 : end[t - 1];  // dealing has moved each end to the next one's begin
+    const size_t begin = t == 0 ? 0 : end[t - 1];  // distribution has moved each end to the end of its table
     const size_t size = std::bit_ceil(std::max<size_t>(2 * (end[t] - begin), 2));
     std::vector<Keyed> table(size, Keyed{0, empty_slot});
     for (size_t i = begin; i < end[t]; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What bake_geometry() makes, kept in a cache.
+// Keeps the result of bake_geometry() in the cache.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,11 @@
 
 namespace chandelier::baker {
 
-/// Fills what bake_geometry() fills, and adds its passes to the report; false where the cache cannot.
+/// Loads the result of bake_geometry() and adds its passes to the report. Returns false if the cache has no usable
+/// entry.
 bool load_geometry(Cache& cache, const std::string& entry, Report& report, Strings& strings, pack::Contents& pack);
 
-/// `first_pass`: of the report, where bake_geometry() began.
+/// `first_pass`: the report's number of the first pass of bake_geometry().
 void store_geometry(Cache& cache, const std::string& entry, const Report& report, size_t first_pass,
                     const pack::Contents& pack);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shadow map holds light or no light, so a surface casts a whole shadow or none: none if it lets half of the light or
+// A shadow map knows only lit and dark, so a surface casts a full shadow or none: none if it lets half of the light or
 // more through. KHR_materials_transmission gives that share: factor · texture (red), of the non-metallic part (1 -
 // factor · texture (blue)).
 #include "glass.h"
@@ -17,8 +17,8 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr float least = 0.5f;  // that passes through glass
-constexpr uint32_t rows = 4;   // a triangle is looked at in the middle of each of its 16 parts
+constexpr float least = 0.5f;  // share of light that glass lets through
+constexpr uint32_t rows = 4;   // a triangle is sampled at the centre of each of its 16 parts
 
 int64_t wrapped(int64_t texel, int64_t size, Wrap wrap) {
   if (wrap == Wrap::clamp_to_edge) return std::clamp<int64_t>(texel, 0, size - 1);
@@ -76,7 +76,7 @@ class Channel {
 
  private:
   static int64_t texel(float coordinate, uint32_t size, Wrap wrap) {
-    constexpr double farthest = 1e15;  // beyond, a float holds no part of a texel
+    constexpr double farthest = 1e15;  // beyond this, a float has no fractions of a texel
     const double at = std::floor(double{coordinate} * size);
     return wrapped(static_cast<int64_t>(std::clamp(at, -farthest, farthest)), size, wrap);
   }
@@ -98,7 +98,7 @@ class Transmission {
   /// The damage of the transmission map; the other map is checked with all images.
   const std::vector<std::string>& damage() const { return through_.damage(); }
 
-  /// Of a triangle, in the mean.
+  /// The mean over a triangle.
   float of(const std::array<const Vertex*, 3>& corners) const {
     float sum = 0;
     for (uint32_t row = 0; row < rows; ++row) {
@@ -204,7 +204,7 @@ bool find_glass_of(Scene& scene, uint32_t number, const ImageSettings& images, P
   scene.materials.push_back(scene.materials[number]);
   scene.materials.back().shadowless = true;
   if (others > 0) return true;
-  for (Mesh& mesh : scene.meshes) {  // the copy is not needed
+  for (Mesh& mesh : scene.meshes) {  // the copied material is not needed
     for (Primitive& primitive : mesh.primitives) {
       if (primitive.material == glass) primitive.material = number;
     }

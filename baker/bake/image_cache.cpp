@@ -109,7 +109,7 @@ void store_images(Cache& cache, const std::string& name, const MadeImages& made)
     images.push_back({{"texels", image.texels}, {"squared_error", image.squared_error}, {"values", image.values}});
   }
   const Json notes = {{"of_request", made.of_request}, {"images", images}, {"damage", made.damage}};
-  const std::string text = notes.dump(-1, ' ', false, Json::error_handler_t::replace);  // throws at no text
+  const std::string text = notes.dump(-1, ' ', false, Json::error_handler_t::replace);  // never throws
   cache.store(name, pack::view_of(contents), text);
 }
 

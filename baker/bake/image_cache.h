@@ -13,20 +13,20 @@
 
 namespace chandelier::baker {
 
-/// Texels as the pack holds them.
+/// Texels in the format of the pack.
 struct StoredTexels {
   pack::Image record;
   std::vector<uint8_t> bytes;
   uint64_t texels = 0;         // of all levels
-  uint64_t squared_error = 0;  // what compression lost, as in Blocks
+  uint64_t squared_error = 0;  // error of the compression, as in Blocks
   uint64_t values = 0;
 };
 
-/// For all requests of one image's bytes.
+/// The results of all requests for one encoded image.
 struct MadeImages {
   std::vector<StoredTexels> images;
-  std::vector<size_t> of_request;   // number among `images`
-  std::vector<std::string> damage;  // of each file, as SceneTexels has it; nothing else where there is an error
+  std::vector<size_t> of_request;   // for each request, an index into `images`
+  std::vector<std::string> damage;  // of each file, as in SceneTexels; the only result if there is an error
   std::string error;
 };
 

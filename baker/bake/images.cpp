@@ -150,12 +150,12 @@ MadeImages make_images_of(const Job& job, const Scene& scene, const std::vector<
                  settings.textures));
     }
   } catch (const Error& error) {
-    made.error = error.what();  // kept, so that the first in order is told, not the first in time
+    made.error = error.what();  // kept, so that the first error in order is reported, not the first in time
   }
   return made;
 }
 
-/// From the cache where it has them, else made and kept.
+/// Loads results from the cache; makes and stores those that it does not have.
 MadeImages find_or_make_images(const Job& job, const Scene& scene, const std::vector<ImageRequest>& requests,
                                const ImageSettings& settings, Cache& cache) {
   if (!cache.is_on()) return make_images_of(job, scene, requests, settings);
@@ -178,7 +178,7 @@ std::vector<uint32_t> count_users(const std::vector<Job>& jobs, const Scene& sce
   return users;
 }
 
-/// Side by side, as many as memory allows. Takes the bytes out of the scene.
+/// Runs jobs in parallel, as many as memory allows. Removes the bytes from the scene.
 std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<ImageRequest>& requests, Scene& scene,
                             const ImageSettings& settings, const Progress& progress, Cache& cache, Warnings& warnings) {
   std::vector<MadeImages> made(jobs.size());

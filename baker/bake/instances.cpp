@@ -34,7 +34,7 @@ pack::Instance instance_record(const MeshInstance& instance, uint32_t mesh, Stri
   return out;
 }
 
-/// With the matrix as the pack has it, not as it was before rounding.
+/// Uses the pack's matrix, not the one before rounding.
 glm::dvec3 to_world(const pack::Instance& instance, const glm::vec3& local) {
   const glm::dvec4 p(local, 1);
   return {glm::dot(glm::dvec4(instance.world_from_local[0]), p), glm::dot(glm::dvec4(instance.world_from_local[1]), p),
@@ -73,7 +73,8 @@ void check_finite(const pack::BatchInstance& record, const std::string& where) {
   }
 }
 
-/// A node costs a file few bytes, and each of its mesh's batches becomes a record: counted before any memory is taken.
+/// A node takes few bytes in a file, but each batch of its mesh becomes a record. So the records are counted before
+/// memory is allocated.
 size_t count_batch_instances(const Scene& scene, const std::vector<MeshRecords>& meshes, const pack::Contents& pack) {
   constexpr uint64_t most_batches = 1ull << 28;
   uint64_t count = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JPEG (ITU-T T.81, Annex B) as a row of marker segments: a decoder fills what is missing with grey and says nothing.
+// JPEG (ITU-T T.81, Annex B) as a sequence of marker segments. The check is needed since a decoder fills missing parts
+// with grey and reports nothing.
 #include "jpeg.h"
 
 namespace chandelier::baker {
@@ -12,7 +13,7 @@ bool stands_alone(uint8_t marker) {
   return (marker >= first_restart && marker <= start_of_image) || marker == temporary;
 }
 
-/// Table B.1: SOF0 to SOF15, among which stand three others.
+/// Table B.1: SOF0 to SOF15; three numbers in between are other markers.
 bool starts_frame(uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
@@ -21,7 +22,8 @@ size_t u16_at(const uint8_t* bytes) {
   return size_t{bytes[0]} << 8 | bytes[1];
 }
 
-/// Where the first marker with a length or the end's stands for which `wanted` holds; the size of `bytes` if none does.
+/// The position of the first marker for which `wanted` holds, among those with a length and the end marker; the size of
+/// `bytes` if there is none.
 template <typename Wanted>
 size_t find_marker(const std::vector<uint8_t>& bytes, Wanted wanted) {
   // Between segments lie the scans' data, in which FF is followed by 00, or by more FF before a marker.

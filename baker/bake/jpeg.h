@@ -9,10 +9,10 @@
 
 namespace chandelier::baker {
 
-/// Whether the file ends where its image does, and not before.
+/// Whether the file is complete: it has the marker that ends the image.
 bool is_whole_jpeg(const std::vector<uint8_t>& bytes);
 
-/// As its frame header claims it.
+/// The size in the frame header.
 ClaimedSize jpeg_size(const std::vector<uint8_t>& bytes);
 
 }  // namespace chandelier::baker

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looks for the mistakes that exporters and units make. A false alarm is worse than a miss: each rule wants to be sure.
+// Looks for the mistakes that exporters and units make. A false alarm is worse than a miss, so each rule must be
+// certain.
 #include "light_audit.h"
 
 #include <fmt/core.h>
@@ -22,9 +23,9 @@ using Numbers = std::vector<size_t>;  // of lights
 
 constexpr double sphere_sr = 4 * 3.14159265358979323846;
 constexpr double exporter_lumens_per_watt = 683;  // what glTF exporters take
-constexpr int rays = 32;                          // from a light that something makes suspicious
+constexpr int rays = 32;                          // from a suspicious light
 constexpr double sunlight_lx = 1e5;               // direct, at noon
-constexpr double fixture_m = 0.3;                 // no room is this small: what is nearer around a light is its lamp
+constexpr double fixture_m = 0.3;  // no room is this small: nearer surfaces around a light are its own lamp
 
 struct Audit {
   const Scene& scene;
@@ -55,8 +56,8 @@ double brightest_cd(const pack::Light& light) {
 
 // ---- Defaults -------------------------------------------------------------------------------------------------------
 
-/// What the intensity is the default of, where it is one. Blender's lights start at 10 W, in its first scene at 1000 W;
-/// 100 W are as common. Its exporter writes 683 W / 4π (standard), W / 4π (unitless) or W (raw) as candela.
+/// Whose default the intensity is, if it is one. Blender's lights start at 10 W, in its first scene at 1000 W; 100 W
+/// are as common. Its exporter writes 683 W / 4π (standard), W / 4π (unitless) or W (raw) as candela.
 std::string default_of(double intensity) {
   if (intensity == 1) return "glTF's default";
   for (const int watts : {10, 100, 1000}) {
@@ -68,7 +69,7 @@ std::string default_of(double intensity) {
 }
 
 /// Lights that nobody touched: all have the same default strength, are white, and none has a range. A scene with one
-/// light says nothing.
+/// light proves nothing.
 void audit_defaults(Audit& audit, const Numbers& placed) {
   if (placed.size() < 2) return;
   const float intensity = audit.baked(placed[0]).intensity;
@@ -87,8 +88,8 @@ void audit_defaults(Audit& audit, const Numbers& placed) {
 
 // ---- Units ----------------------------------------------------------------------------------------------------------
 
-/// Mistakes with units, by the lumens that they make of a watt. 683 is right; lamps have fewer, and what is none of
-/// these numbers is nobody's mistake but maybe a choice.
+/// Mistakes with units, recognized by the lumens per watt that they lead to. 683 is right. Real lamps have fewer; any
+/// other number may be a choice, so it is not reported.
 struct Mixup {
   double lumens_per_watt;
   const char* count;
@@ -117,7 +118,7 @@ void audit_power(Audit& audit, const Numbers& placed) {
   }
 }
 
-/// What a light gives the surfaces around it, lux: at the median of the distances that rays find. None where most find
+/// The illuminance of the surfaces around a light, lux, at the median distance that rays find. Nothing if most rays hit
 /// nothing.
 std::optional<double> illuminance_lx(const pack::Contents& pack, const pack::Light& light) {
   std::vector<double> distances;
@@ -131,14 +132,14 @@ std::optional<double> illuminance_lx(const pack::Contents& pack, const pack::Lig
   return brightest_cd(light) / (*middle * *middle);
 }
 
-/// Nothing that is more than a lamp away from a light is brighter than in the sun.
+/// Lights whose surroundings, outside of the lamp, are brighter than in sunlight.
 Numbers brighter_than_sunlight(const Audit& audit, const Numbers& placed) {
   std::vector<uint8_t> found(placed.size(), 0);
   tbb::parallel_for(size_t{0}, placed.size(), [&](size_t i) {
     const pack::Light& light = audit.baked(placed[i]);
     if (brightest_cd(light) < sunlight_lx * fixture_m * fixture_m) return;
     const std::optional<double> lux = illuminance_lx(audit.pack, light);
-    // In a lamp of its own, a light may be as bright as this at its shade.
+    // Within its own lamp, a light may be this bright at the shade.
     found[i] = lux && *lux > sunlight_lx && brightest_cd(light) / *lux > fixture_m * fixture_m;
   });
   Numbers out;
@@ -152,8 +153,8 @@ double median_cd(const Audit& audit, std::span<const size_t> sorted) {
   return brightest_cd(audit.baked(sorted[sorted.size() / 2]));
 }
 
-/// The lights above a gap of more than 50 times in strength, if they are the lesser half and about 683 times as strong
-/// as the others: some of a scene's lights went another way through the units than the rest.
+/// The lights above a gap of more than 50 times in strength, if they are fewer than the others and about 683 times as
+/// strong: some lights of the scene were converted with other units than the rest.
 Numbers strong_minority(const Audit& audit, const Numbers& placed) {
   Numbers sorted = placed;
   const auto strength = [&](size_t i) { return brightest_cd(audit.baked(i)); };
@@ -217,7 +218,7 @@ bool is_swallowed(const pack::Contents& pack, const pack::Light& light) {
   for (size_t i = 0; i < ways.size(); ++i) {
     const RayHit hit = cast_ray(pack, from, ways[i], pack::shadow_near_m(light));
     if (hit.shells_around > 0) ++inside;
-    if (i == 1 && inside == 0) return false;  // two rays agree that it stands free
+    if (i == 1 && inside == 0) return false;  // two rays found no shell around it
     if (hit.closed_back && hit.distance_m <= light.range_m && (!hit.double_sided || hit.distance_m < fixture_m)) {
       ++kept;
     }
@@ -243,13 +244,13 @@ void audit_touching(Audit& audit, const Numbers& placed) {
 }
 
 void audit_places(Audit& audit, const Numbers& placed) {
-  if (audit.pack.batch_instances.empty()) return;  // a rig without its scene
+  if (audit.pack.batch_instances.empty()) return;  // lights without a scene
   const bool any_closed = std::ranges::any_of(audit.pack.batches, [](const pack::Batch& b) { return b.closed == 1; });
   enum : uint8_t { fine, swallowed, alone };
   std::vector<uint8_t> found(placed.size(), fine);
   tbb::parallel_for(size_t{0}, placed.size(), [&](size_t i) {
     const pack::Light& light = audit.baked(placed[i]);
-    if (light.dynamic) return;  // it is there only now
+    if (light.dynamic) return;  // its position may change
     if (!reaches_anything(audit.pack, light)) {
       found[i] = alone;
     } else if (any_closed && is_swallowed(audit.pack, light)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spheres around what lights reach.
+// Bounding spheres of the volumes that lights reach.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,13 +13,15 @@ struct Sphere {
   double radius = 0;
 };
 
-/// The smallest sphere around all that a point or spot light reaches: its range, cut to its cone.
+/// The smallest sphere around the volume that a point or spot light reaches: a ball with its range as radius, cut to
+/// its cone.
 Sphere light_bounds(const pack::Light& light);
 
 /// The smallest sphere around both.
 Sphere enclosing(const Sphere& a, const Sphere& b);
 
-/// In floats: the nearest centre, and a radius that is large enough for it. Both are finite.
+/// Rounds to floats: the centre to the nearest, and the radius up, so that the sphere still holds the volume. Both are
+/// finite.
 struct FloatSphere {
   glm::vec3 center;
   float radius;

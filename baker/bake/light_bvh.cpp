@@ -17,8 +17,8 @@ namespace {
 
 constexpr int bin_count = 16;
 constexpr int keys = 4;             // x, y, z, and the radius's logarithm
-constexpr int most_uneven = 64;     // splits in a row before halving: no tree is deeper than this and log2 n
-constexpr size_t parallel = 2048;   // lights that are worth a task
+constexpr int most_uneven = 64;     // uneven splits in a row before halving: a tree is at most this plus log2 n deep
+constexpr size_t parallel = 2048;   // lights that are worth a task of their own
 constexpr size_t refine_steps = 8;  // of a node's sphere
 
 struct Item {
@@ -32,7 +32,8 @@ double key_of(const Item& item, int key) {
   return key < 3 ? item.sphere.center[key] : item.log_radius;
 }
 
-/// An upper bound of the sphere around some: half the diagonal of their centres' box, and their largest radius.
+/// An upper bound of the radius of the sphere around some lights: half the diagonal of their centres' box, and their
+/// largest radius.
 struct Extent {
   glm::dvec3 low{INFINITY}, high{-INFINITY};
   double radius = 0;
@@ -112,7 +113,7 @@ double radius_around(const glm::dvec3& center, Items items, const Item*& farthes
   return radius;
 }
 
-/// A small sphere around all: from a first guess, the centre steps towards whatever is farthest, each time less
+/// A small sphere around all: from a first guess, the centre moves towards the farthest light, in shrinking steps
 /// (Badoiu and Clarkson 2003); the best step counts.
 Sphere sphere_around(Items items, const Sphere& guess) {
   Sphere best = guess;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks batch_bvh where the pack has one, else all batch instances, then the triangles of the batches that are met.
+// Traverses batch_bvh if the pack has one, else all batch instances, then the triangles of the batches that are hit.
 #include "light_rays.h"
 
 #include <algorithm>
@@ -88,7 +88,7 @@ double meet_triangle(const Ray& ray, const Triangle& triangle, bool& leaves) {
   return distance;
 }
 
-/// Of the box's points, the one next to `point` is nearer than `radius`.
+/// Whether a point of the box is within `radius` of `point`.
 bool is_near_box(const glm::dvec3& point, double radius, const glm::vec3& low, const glm::vec3& high) {
   const glm::dvec3 apart = point - glm::clamp(point, glm::dvec3(low), glm::dvec3(high));
   return glm::dot(apart, apart) <= radius * radius;
@@ -117,8 +117,8 @@ double cosine_to_triangle(const Triangle& t, const glm::dvec3& axis) {
       {cosine_to_segment(t[0], t[1], axis), cosine_to_segment(t[1], t[2], axis), cosine_to_segment(t[2], t[0], axis)});
 }
 
-/// Notes the batch's triangles that the ray meets and that cast shadows. The ray goes into mesh space, where distances
-/// along it stay.
+/// Adds the ray's hits with those triangles of the batch that cast shadows. The ray is transformed to mesh space
+/// without scaling its direction, so that distances along it stay the same.
 void cast_at_batch(const pack::Contents& pack, const pack::BatchInstance& draw, const Ray& ray, double least_m,
                    RayHit& hit) {
   const pack::Batch& batch = pack.batches[draw.batch];
@@ -171,13 +171,13 @@ std::vector<glm::dvec3> directions_of(const pack::Light& light, int count) {
 
 namespace {
 
-/// From the point to the farthest of the box, beyond which no triangle in it can be.
+/// The distance from the point to the farthest corner of the box: no triangle in it is farther away.
 double farthest_of_box(const glm::dvec3& point, const glm::vec3& low, const glm::vec3& high) {
   return glm::length(glm::max(glm::abs(point - glm::dvec3(low)), glm::abs(point - glm::dvec3(high))));
 }
 
-/// Calls visit(batch instance) for those that cast a shadow, moving ones where they rest, and whose boxes are not
-/// farther away than `nearest`, which it may lessen.
+/// Calls visit(batch instance) for those that cast a shadow, moving ones at rest, and whose boxes are not farther away
+/// than `nearest`, which `visit` may reduce.
 template <typename Visit>
 void visit_casters_near(const pack::Contents& pack, const std::vector<uint32_t>& moving, const glm::dvec3& point,
                         const double& nearest, Visit visit) {
@@ -209,7 +209,7 @@ double nearest_caster_m(const pack::Contents& pack, const std::vector<uint32_t>&
                         double most_m) {
   double nearest = most_m;
   visit_casters_near(pack, moving, at, nearest,
-                     [&](const pack::BatchInstance& draw) {  // so that few triangles are looked at
+                     [&](const pack::BatchInstance& draw) {  // so that few triangles are tested
                        nearest = std::min(nearest, farthest_of_box(at, draw.bounds_min_ws, draw.bounds_max_ws));
                      });
   visit_casters_near(pack, moving, at, nearest, [&](const pack::BatchInstance& draw) {

@@ -17,7 +17,7 @@ namespace chandelier::baker {
 
 namespace {
 
-/// Numbers from 1, in the order in which the names are met; 0 for no name.
+/// Numbers from 1, in the order in which the names occur; 0 for no name.
 class Groups {
  public:
   uint32_t number(const std::string& name) {
@@ -29,7 +29,7 @@ class Groups {
   std::unordered_map<std::string, uint32_t> numbers_;
 };
 
-/// Rounded down, so that nothing is nearer.
+/// Rounds down, so that no caster is nearer.
 void measure_nearest(const pack::Contents& pack, const std::vector<uint32_t>& moving, pack::Light& light) {
   if (light.type == pack::LightType::directional) return;
   const double nearest = nearest_caster_m(pack, moving, glm::dvec3(light.position_ws), light.range_m);

@@ -8,7 +8,7 @@
 
 namespace chandelier::baker {
 
-/// After the voxels, in whose cells lights are placed.
+/// Runs after the voxel pass, since each light records its cell.
 void make_lights(const Scene& scene, float range_threshold_lx, Strings& strings, pack::Contents& pack);
 void make_cameras(const Scene& scene, Strings& strings, pack::Contents& pack);
 

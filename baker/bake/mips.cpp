@@ -49,7 +49,7 @@ const SrgbTable& srgb() {
   return table;
 }
 
-/// What filtering keeps between levels: RGB linear, alpha plain.
+/// A texel between levels: RGB linear, alpha as stored.
 struct Level {
   uint32_t width, height;
   std::vector<glm::vec4> texels;
@@ -69,10 +69,10 @@ Taps taps(uint32_t size, uint32_t x) {
   return {3, {2 * x, 2 * x + 1, 2 * x + 2}, {(half - fx) / whole, half / whole, (fx + 1) / whole}};
 }
 
-/// Runs `work(first, end)` over the rows of an image, side by side.
+/// Runs `work(first, end)` over the rows of an image, in parallel.
 template <typename Work>
 void over_rows(uint32_t width, uint32_t height, Work work) {
-  const uint32_t grain = std::max(1u, 32768u / width);  // rows worth a task
+  const uint32_t grain = std::max(1u, 32768u / width);  // rows per task
   tbb::parallel_for(tbb::blocked_range<uint32_t>(0, height, grain),
                     [&](const auto& rows) { work(rows.begin(), rows.end()); });
 }

@@ -28,8 +28,8 @@ uint8_t srgb_of_linear(float value);
 uint32_t mip_level_count(uint32_t width, uint32_t height);
 
 /// All levels down to 1×1, largest first, level n max(1, size >> n) wide and high; those above `max_size` are left out
-/// (0: none). With masked_color, `alpha_cutoff` (0 to 1) is the least alpha that is seen. Same levels on any number of
-/// threads.
+/// (0: none). With masked_color, `alpha_cutoff` (0 to 1) is the smallest visible alpha. The result does not depend on
+/// the number of threads.
 std::vector<Texels> mip_chain(Texels&& top, ImageUse use, float alpha_cutoff = 0, uint32_t max_size = 0);
 
 }  // namespace chandelier::baker

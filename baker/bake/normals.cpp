@@ -47,7 +47,7 @@ double angle_at(const Primitive& primitive, size_t triangle, size_t c) {
 /// A mesh over the primitive's places, whose face t is triangle t. Where the surface is not a manifold, or a triangle
 /// repeats a place, the triangle has vertices of its own.
 HalfedgeMesh halfedge_mesh(const Primitive& primitive) {
-  [[maybe_unused]] static const bool quiet = (omerr().disable(), true);  // it would tell of each such triangle
+  [[maybe_unused]] static const bool quiet = (omerr().disable(), true);  // else it prints each such triangle
   const std::vector<Vertex>& vertices = primitive.vertices;
   const auto place = first_equal(
       vertices.size(),

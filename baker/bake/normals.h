@@ -8,9 +8,9 @@
 
 namespace chandelier::baker {
 
-/// Gives each triangle its flat normal, which is what glTF asks for; above 0, neighbours across an edge whose normals
-/// differ by at most `smooth_angle_rad` are smoothed, weighted by their angles. A vertex with several normals becomes
-/// several.
+/// Gives each triangle its flat normal, as glTF requires. If `smooth_angle_rad` is above 0, the normals of neighbours
+/// across an edge are averaged, weighted by their angles, where they differ by at most that. A vertex with several
+/// normals becomes several.
 void make_normals(Primitive& primitive, float smooth_angle_rad);
 
 /// The same for each primitive that needs it; returns how many did.

@@ -22,7 +22,7 @@ struct PackedPrimitive {
   std::vector<PackedVertex> vertices;
   std::vector<SkinVertex> skin_vertices;  // one per vertex, or none
   std::vector<uint32_t> indices;          // a triangle list
-  std::vector<bool> closed;               // per triangle: it may be culled by facing
+  std::vector<bool> closed;               // per triangle: whether it may be culled by facing
   uint32_t material = 0;
 
   size_t triangle_count() const { return indices.size() / 3; }
@@ -37,7 +37,8 @@ inline const glm::vec3& corner_of(const PackedPrimitive& primitive, size_t trian
   return primitive.vertices[primitive.indices[3 * triangle + c]].position_ls;
 }
 
-/// Twice the area along the normal. Exact, and so exactly zero where it is, for corners on a grid of 2^25 steps.
+/// A vector along the normal whose length is twice the area. For corners on a grid of 2^25 steps it is exact, so it is
+/// exactly zero for a triangle without area.
 inline glm::dvec3 area_vector(const PackedPrimitive& primitive, size_t triangle) {
   const glm::dvec3 a = corner_of(primitive, triangle, 0);
   return glm::cross(glm::dvec3(corner_of(primitive, triangle, 1)) - a,

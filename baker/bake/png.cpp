@@ -40,7 +40,7 @@ struct Header {
   uint8_t depth, color, interlaced;
 };
 
-/// 5.4: others may be left out.
+/// 5.4: ancillary chunks may be left out.
 bool is_critical(const std::string& type) {
   return type[0] >= 'A' && type[0] <= 'Z';
 }
@@ -132,7 +132,7 @@ class Inflater {
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  /// What is wrong, or nothing.
+  /// The fault, or an empty text.
   std::string read(Bytes& row, size_t number) {
     if (!inflate_to(row)) return fault("its data cannot be inflated after byte", stream_.total_in);
     return stream_.avail_out > 0 ? fault("its data ends in row", number) : "";
@@ -171,8 +171,8 @@ class Inflater {
 };
 
 struct Rows {
-  size_t good = 0;    // from the first on
-  std::string fault;  // what is wrong with the next, or with what ends the data; or nothing
+  size_t good = 0;    // rows from the first on
+  std::string fault;  // of the next row or of the end of the data; empty if there is none
 };
 
 Rows check_rows(const std::vector<size_t>& sizes, const std::vector<Chunk>& data) {
@@ -191,7 +191,7 @@ Rows check_rows(const std::vector<size_t>& sizes, const std::vector<Chunk>& data
   return out;
 }
 
-/// The good rows again; every other row repeats the one above it.
+/// Compresses the good rows again; every other row repeats the one above it.
 Bytes mended_rows(const std::vector<size_t>& sizes, size_t good, const std::vector<Chunk>& data) {
   constexpr uint8_t up_filter = 2;  // filter: what is added to the row above
   Inflater inflater(data);
@@ -257,7 +257,7 @@ void append_data(const Header& header, const std::vector<Chunk>& data, size_t fi
     return;
   }
   note(damage, rows.fault);
-  if (has_no_picture({header.width, header.height}, file_bytes)) fail(where, damage);  // before it takes gigabytes
+  if (has_no_picture({header.width, header.height}, file_bytes)) fail(where, damage);  // before gigabytes are allocated
   const Bytes mended = mended_rows(sizes, rows.good, data);
   constexpr size_t most_in_chunk = size_t{1} << 30;
   for (size_t at = 0; at < mended.size(); at += most_in_chunk) {

@@ -16,7 +16,7 @@ namespace chandelier::baker {
 /// below repeat the last good one). Throws Error, beginning with `where`, if no picture is left.
 std::vector<uint8_t> essential_png(const std::vector<uint8_t>& bytes, const std::string& where, std::string& damage);
 
-/// As its header claims it.
+/// The size in the header.
 ClaimedSize png_size(const std::vector<uint8_t>& bytes);
 
 }  // namespace chandelier::baker

@@ -28,13 +28,14 @@ struct Errors {
   }
 };
 
-/// Which attributes are ever read. Texture coordinates: how much an image's, at most, are off for each of theirs.
+/// Which attributes are read. For texture coordinates: the largest error of an image's coordinates per unit of error of
+/// the mesh's.
 struct Needs {
   bool tangent = false;
   double uv0 = 0, uv1 = 0;  // 0: not read
 };
 
-/// Along the image's u or v, whichever is more, where the mesh's u and v are each off by 1.
+/// The larger error along the image's u or v if the mesh's u and v are each off by 1.
 double uv_scale(const UvTransform& transform) {
   const auto sum = [](const glm::vec3& row) { return std::abs(double{row.x}) + std::abs(double{row.y}); };
   return std::max(sum(transform[0]), sum(transform[1]));
@@ -47,12 +48,13 @@ Needs needs_of(const Material& material) {
                                 &material.occlusion, &material.emissive_map}) {
     if (use->texture == no_index) continue;
     double& scale = use->uv1 ? needs.uv1 : needs.uv0;
-    scale = std::max({scale, uv_scale(use->uv_transform), 1e-30});  // a scale of 0 reads too
+    scale = std::max({scale, uv_scale(use->uv_transform), 1e-30});  // coordinates scaled by 0 are read too
   }
   return needs;
 }
 
-/// Rounds to multiples of a power of two; 0 keeps the value. Where a float is coarser than the step, it is one already.
+/// Rounds to multiples of a power of two; 0 keeps the value. A float that is coarser than the step is already such a
+/// multiple.
 class Grid {
  public:
   explicit Grid(double step) : step_(step), per_step_(step > 0 ? 1 / step : 0) {}
@@ -162,11 +164,11 @@ std::vector<double> key_scales(const Scene& scene) {
   return out;
 }
 
-/// What a node stretches.
+/// How much a node stretches what it carries.
 struct Stretch {
   glm::dmat4 world{1};  // at rest
-  bool grows = false;   // its scale is animated, or that of a node above it
-  double most = 0;      // if it grows: at whatever keys of it and those above
+  bool grows = false;   // whether its scale, or that of a node above it, is animated
+  double most = 0;      // if it grows: the largest factor at any keys of it and of those above
 };
 
 std::vector<Stretch> stretches_of(const Scene& scene) {

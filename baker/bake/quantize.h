@@ -12,16 +12,16 @@ struct QuantizeSettings {
   int uv_bits = 14;  // after the point, of the image's coordinates; 0 keeps floats
 };
 
-/// The most that the upper left 3×3 matrix stretches a vector.
+/// The largest factor by which the upper left 3×3 matrix stretches a vector.
 double largest_scale(const glm::dmat4& matrix);
 
-/// The power of two to whose multiples a mesh's coordinates are rounded, or 0 for none: no vertex moves by more than
-/// `error_m` where the mesh is stretched by at most `scale`, and `extent_ls`, the longest side of its box, has at least
-/// 16384 steps.
+/// The grid step of a mesh, a power of two; coordinates are rounded to its multiples; 0: they are not rounded. No
+/// vertex moves by more than `error_m` where the mesh is stretched by at most `scale`, and `extent_ls`, the longest
+/// side of its box, has at least 16384 steps.
 double grid_step(double error_m, double scale, double extent_ls);
 
-/// Takes the meshes' vertices out of the scene. What was measured goes into `info`: position_error_m, normal_error_rad
-/// and uv_error. Attributes that no texture of the material needs become zero.
+/// Takes the meshes' vertices out of the scene. Writes the measured errors to `info`: position_error_m,
+/// normal_error_rad and uv_error. Attributes that no texture of the material needs become zero.
 std::vector<PackedMesh> quantize(Scene& scene, const QuantizeSettings& settings, pack::BakeInfo& info);
 
 }  // namespace chandelier::baker

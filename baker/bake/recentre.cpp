@@ -14,7 +14,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr double coarse_m = 1e-3;  // floats that are further apart than this are worth a word
+constexpr double coarse_m = 1e-3;  // a warning is given where adjacent floats are further apart than this
 
 struct Box {
   glm::dvec3 low{INFINITY}, high{-INFINITY};
@@ -54,7 +54,7 @@ bool is_far(const glm::dvec3& place) {
   return std::max({spacing(place.x), spacing(place.y), spacing(place.z)}) > coarse_m;
 }
 
-/// Of a far position: every coordinate where floats are coarse is exactly a float.
+/// Whether a far position is exactly a float in each coordinate where floats are coarse.
 bool is_of_floats(const glm::dvec3& place) {
   for (int axis = 0; axis < 3; ++axis) {
     if (spacing(place[axis]) > coarse_m && !is_float(place[axis])) return false;
@@ -145,7 +145,7 @@ int recentre_meshes(Scene& scene, const std::vector<Box>& boxes) {
   return count;
 }
 
-/// Around meshes, and around lights that have a place.
+/// The box around all meshes and all lights that have a position.
 Box box_of(const Scene& scene, const std::vector<Box>& boxes) {
   Box all;
   for (const MeshInstance& instance : scene.instances) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes in bins along each axis, to cut groups of them by the surface area heuristic (SAH): what hierarchies and
-// batches share. Four floats at a time.
+// Sorts boxes into bins along each axis, to split groups of boxes by the surface area heuristic (SAH). Hierarchies and
+// batches use it. It works on four floats at a time.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -18,7 +18,7 @@
 
 #include "bvh_item.h"
 
-/// Not for all of the baker: the names are short.
+/// A namespace of its own, since its names are short.
 namespace chandelier::baker::sah {
 
 /// Four floats in one register, with GCC's and Clang's operators; the last one is unused.
@@ -50,7 +50,7 @@ struct Box {
   }
 };
 
-/// Two whole registers, and zero for what stands behind the components.
+/// Loads two registers; the lane after the three components becomes zero.
 inline Box box_of(const BvhItem& item) {
   static_assert(offsetof(BvhItem, low) == 0 && offsetof(BvhItem, high) == 16);
   const auto* bytes = reinterpret_cast<const std::byte*>(&item);
@@ -61,12 +61,12 @@ inline Box box_of(const BvhItem& item) {
   return {std::bit_cast<Float4>(low & three), std::bit_cast<Float4>(high & three)};
 }
 
-/// Twice the centre of a box: as good, where only places among others matter.
+/// Twice the centre of a box, which is enough to compare positions.
 inline Float4 centre(const Box& box) {
   return box.low + box.high;
 }
 
-/// Where along each axis a centre lies, in bins.
+/// Finds the bin of a centre on each axis.
 struct Binning {
   Float4 low, scale;
   size_t bins;
@@ -87,7 +87,7 @@ struct Binning {
   }
 };
 
-/// Without a constructor, so that making many costs nothing; empty() is what they start from.
+/// It has no constructor, so that making many costs nothing; start from empty().
 struct Bin {
   Float4 low, high;
   uint32_t items;
@@ -115,8 +115,8 @@ inline std::array<AxisBins, 3> fill_bins(std::span<const BvhItem> items, const B
   return axes;
 }
 
-/// How many items, brought to the front, are in the bins below `bin`; what their centres span, and the others'.
-/// Which side an item is on is as good as random, so nothing here branches on it.
+/// Moves the items of the bins below `bin` to the front and returns their number; `left` and `right` become the bounds
+/// of both sides' centres. The side of an item is hard to predict, so nothing here branches on it.
 inline size_t partition(std::span<BvhItem> items, const Binning& binning, int axis, size_t bin, Box& left, Box& right) {
   const Box nothing;
   const float low = binning.low[axis], scale = binning.scale[axis], border = static_cast<float>(bin);

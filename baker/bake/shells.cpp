@@ -169,7 +169,7 @@ ShellCounts find_shells(PackedMesh& mesh, const std::vector<Material>& materials
     const uint32_t root = forest.root(number);
     counts.shells += root == number;
     if (open[root]) return;
-    if (root == number) {  // the lowest of its triangles, so the first to come
+    if (root == number) {  // the lowest number of its triangles, so it comes first
       shell_of[root] = static_cast<uint32_t>(shells.size());
       shells.push_back({corner_of(primitive, t, 0)});
     }

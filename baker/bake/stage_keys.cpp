@@ -64,7 +64,7 @@ class SceneKey {
     const auto& [name, base_color_factor, emissive, metallic_factor, roughness_factor, alpha_cutoff, normal_scale,
                  occlusion_strength, base_color, metallic_roughness, normal, occlusion, emissive_map, masked,
                  double_sided, unlit, where, transmission_factor, transmission_map, shadow, shadowless] =
-        material;  // glass is found by now: its map has chosen materials
+        material;  // glass is already found: shadowless holds what its map has decided
     add(base_color_factor);
     add(emissive);
     for (const float value : {metallic_factor, roughness_factor, alpha_cutoff, normal_scale, occlusion_strength}) {
@@ -122,7 +122,7 @@ void add_geometry_settings(CacheKey& key, const BakeSettings& settings) {
   for (const uint32_t cells : resolution) key.add(cells);
   key.add(mode);
   key.add(smooth_angle_deg);
-  key.add(images.textures == TextureMode::none);  // then materials have none
+  key.add(images.textures == TextureMode::none);  // then materials have no textures
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 namespace chandelier::baker {
 
-/// The entry of what bake_geometry() makes: of everything in the scene but lights, cameras, images' bytes and the
-/// places that messages name.
+/// The name of the cache entry of bake_geometry(): a hash of everything in the scene except lights, cameras, the bytes
+/// of images and places named in messages.
 std::string geometry_entry(const Scene& scene, const BakeSettings& settings);
 
 }  // namespace chandelier::baker

@@ -43,7 +43,7 @@ double angle_at(const Vertex& at, const Vertex& b, const Vertex& c) {
   return lengths > 0 ? std::acos(std::clamp(glm::dot(to_b, to_c) / lengths, -1.0, 1.0)) : 0;
 }
 
-/// `sum` made orthogonal to the normal, or any direction across it.
+/// `sum` made orthogonal to the normal, or any direction orthogonal to it.
 glm::vec3 across(const glm::vec3& normal, const glm::dvec3& sum) {
   const glm::dvec3 n = normal;
   glm::dvec3 tangent = sum - n * glm::dot(n, sum);

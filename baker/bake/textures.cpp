@@ -71,8 +71,8 @@ class Textures {
   std::map<ImageRequest, uint32_t> requests_;
 };
 
-/// The least alpha of the base colour's texture that is seen; 0 where the texture does not decide it. Vertex colours
-/// are left out of account.
+/// The smallest visible alpha of the base colour's texture; 0 if the texture does not decide it. Vertex colours are
+/// ignored.
 float texture_cutoff(const Material& material) {
   if (!material.masked || !(material.base_color_factor.a > 0)) return 0;
   const float cutoff = material.alpha_cutoff / material.base_color_factor.a;

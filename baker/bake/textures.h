@@ -9,8 +9,9 @@
 
 namespace chandelier::baker {
 
-/// Fills materials and, with `textures`, textures, whose image is the number of a request that is returned, for
-/// make_images. Without textures, factors alone remain, and a material with an emissive texture does not glow.
+/// Fills materials and, with `textures`, textures. Returns the requests for make_images; until that runs, a texture's
+/// image is the number of a request. Without textures, factors alone remain, and a material with an emissive texture
+/// does not glow.
 std::vector<ImageRequest> make_materials(const Scene& scene, bool textures, Strings& strings, pack::Contents& pack);
 
 }  // namespace chandelier::baker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why no overlap is missed. Two convex sets whose projections on some axis a, any axis, do not meet, do not meet. So it
+// Why no overlap is missed. Two convex sets whose projections on any axis a are disjoint are disjoint. So it
 // does not matter how well the thirteen axes are computed, only that projections are not narrower than they are. Let
 // e = 2⁻⁵³, S the largest coordinate, w the triangle's corners relative to the box's centre c, h the box's half size.
 //   - c, h and w take one or two roundings each of numbers below 2 S: each is off by at most 4 e S.

@@ -42,8 +42,8 @@ struct Grid {
   }
 };
 
-/// A grid around a box, a little wider, so that nothing in the box touches the grid's outside. Axes without extent get
-/// one. Throws Error where a float cannot hold the grid.
+/// A grid around a box, a little wider, so that nothing in the box touches the grid's outer faces. Axes without extent
+/// get one. Throws Error where a float cannot hold the grid.
 pack::VoxelGrid make_voxel_grid(const glm::vec3& bounds_min_ws, const glm::vec3& bounds_max_ws,
                                 const std::array<uint32_t, 3>& resolution, pack::VoxelMode mode);
 

@@ -56,9 +56,9 @@ Overlaps overlaps_of(const Triangle& triangle, const Grid& grid, double slack) {
   const CellRange range = cells_of(grid, low, high, slack);
   const glm::ivec3 size = range.size();
   Overlaps out;
-  if (std::max({size.x, size.y, size.z}) > most_cells) {  // in one piece, so it has a point in each layer
+  if (std::max({size.x, size.y, size.z}) > most_cells) {  // a triangle is connected, so it has a point in each layer
     out.count = most_cells + 1;
-  } else if (size.x * size.y * size.z <= most_cells) {  // the same: in both
+  } else if (size.x * size.y * size.z <= most_cells) {  // likewise: it has a point in both cells
     out.cells = {grid.number(range.low), grid.number(range.high)};
     out.count = size.x * size.y * size.z;
   } else {

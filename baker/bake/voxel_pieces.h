@@ -13,16 +13,16 @@
 namespace chandelier::baker {
 
 struct VoxelPiece {
-  uint32_t cell = 0;  // the grid's count of cells: no cell, always drawn
+  uint32_t cell = 0;  // the grid's number of cells: in no cell, always drawn
   uint32_t batch_instance = 0;
   uint32_t triangle_count = 0;
-  uint32_t block = 0;         // whose arrays the rest points into
+  uint32_t block = 0;         // the block that holds the arrays for the numbers below
   uint32_t first_number = 0;  // pack::none: the whole batch
   uint32_t first_vertex = 0;  // clipped only
   uint32_t vertex_count = 0;
 };
 
-/// The pieces of some batch instances in a row; blocks are what threads work on.
+/// The pieces of consecutive batch instances. A thread works on one block at a time.
 struct VoxelBlock {
   std::vector<VoxelPiece> pieces;
   std::vector<uint16_t> numbers;            // separate: triangles of the batch; clipped: corners, from first_vertex on
@@ -48,8 +48,8 @@ class PlacedBatch {
   Triangle triangle_ws(uint32_t triangle) const {
     return {corner_ws(triangle, 0), corner_ws(triangle, 1), corner_ws(triangle, 2)};
   }
-  /// No corner of triangle_ws is farther than this from where it is, along each axis, nor is Grid's about_cell_of more
-  /// than this from the plane that it should be at: 2⁻⁴⁷ times the largest number that goes into either.
+  /// An upper bound, along each axis, of the rounding errors of triangle_ws's corners and of the planes by which Grid's
+  /// about_cell_of decides: 2⁻⁴⁷ times the largest number that goes into either.
   double slack_m(const Grid& grid) const;
 
  private:
@@ -60,7 +60,8 @@ class PlacedBatch {
   glm::dvec3 x_, y_, z_, origin_;  // columns of world_from_local
 };
 
-/// Appends a batch's triangles to `block`: with each cell where they overlap at most two, else with no cell.
+/// Appends a batch's triangles to `block`: for each cell that a triangle overlaps if they are at most two, else for no
+/// cell.
 void bin_separate(const PlacedBatch& placed, const Grid& grid, VoxelBlock& block);
 
 }  // namespace chandelier::baker

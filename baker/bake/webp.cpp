@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Alpha is told by a bit of the chunk VP8X (RFC 9649, 2.7), lies in a chunk ALPH, or is told by a bit of a lossless
-// image's header (3.4).
+// Alpha is announced by a bit of the chunk VP8X (RFC 9649, 2.7) and stored in a chunk ALPH, or announced by a bit of a
+// lossless image's header (3.4).
 #include "webp.h"
 
 #include <algorithm>

@@ -9,10 +9,10 @@
 
 namespace chandelier::baker {
 
-/// A copy whose header denies alpha, so that it decodes to its colours alone.
+/// A copy whose header says that there is no alpha, so that a decoder returns the colours without alpha.
 std::vector<uint8_t> webp_without_alpha(const std::vector<uint8_t>& bytes);
 
-/// As its first chunk claims it.
+/// The size in the first chunk.
 ClaimedSize webp_size(const std::vector<uint8_t>& bytes);
 
 }  // namespace chandelier::baker

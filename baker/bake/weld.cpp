@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Welds exactly: what is nearly equal was made equal by its grid.
+// Welds only equal vertices: quantization has made nearly equal ones equal.
 #include "weld.h"
 
 #include <cstring>

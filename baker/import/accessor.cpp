@@ -97,7 +97,7 @@ std::span<const uint8_t> element_bytes(const Gltf& gltf, int view, uint64_t offs
   return bytes.subspan(offset);
 }
 
-/// Copies the elements together and puts sparse values in their places.
+/// Copies the elements into one array and inserts the sparse values.
 void gather(const Gltf& gltf, const tinygltf::Accessor& accessor, size_t element, const std::string& where,
             Elements& out) {
   constexpr size_t most_zeros = size_t{1} << 22;  // a few bytes of a file can ask for any number
@@ -211,7 +211,7 @@ size_t to_floats(const Elements& elements, size_t first, size_t count, float* ou
       convert_floats(elements, first, count, out);
   }
   const size_t values = count * elements.components;
-  uint32_t bad = 0;  // no branch: the compiler makes vectors of it
+  uint32_t bad = 0;  // no branch, so that the compiler vectorizes the loop
   for (size_t i = 0; i < values; ++i) {
     const auto bits = std::bit_cast<uint32_t>(out[i]);
     bad |= uint32_t{(bits & 0x7F800000u) == 0x7F800000u};
@@ -267,8 +267,8 @@ std::vector<uint32_t> read_indices(const Gltf& gltf, int index, uint64_t end, co
 }
 
 void for_blocks(size_t count, const std::function<void(size_t, size_t)>& work) {
-  constexpr size_t block_size = 1024;  // of vertices: 60 KiB, which caches hold while each attribute passes over them
-  constexpr size_t at_once = 16;       // blocks that one thread takes
+  constexpr size_t block_size = 1024;  // vertices: 60 KiB, which stay in the cache for all attributes
+  constexpr size_t at_once = 16;       // blocks per task
   tbb::parallel_for(tbb::blocked_range<size_t>(0, (count + block_size - 1) / block_size, at_once),
                     [&](const auto& range) {
                       for (size_t block = range.begin(); block < range.end(); ++block) {

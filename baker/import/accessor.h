@@ -10,10 +10,10 @@
 
 namespace chandelier::baker {
 
-/// The accessor; its count is not larger than its buffer view has bytes. Throws Error.
+/// Returns the accessor after a check that its count is at most the number of bytes of its buffer view. Throws Error.
 const tinygltf::Accessor& checked_accessor(const Gltf& gltf, int accessor, const std::string& where);
 
-/// An accessor's elements: where they lie in a buffer, or in `own` where there is no such place. Each of the `count`
+/// An accessor's elements: in their buffer, or in `own` if they had to be copied or decoded. Each of the `count`
 /// elements at `data + i * stride` has `components` values of `component_type` that may be read.
 struct Elements {
   const uint8_t* data = nullptr;
@@ -27,16 +27,16 @@ struct Elements {
 
 size_t component_size(int component_type);
 
-/// Vectors of `least` to `most` components, or matrices where both are 16. Throws Error.
+/// Reads vectors of `least` to `most` components, or matrices if both are 16. Throws Error.
 Elements elements_of(const Gltf& gltf, int accessor, size_t least, size_t most, const std::string& where);
 
-/// Converts `count` elements from `first`, tightly, normalized integers mapped to 0..1 or -1..1. Returns the number of
-/// the first element among all that is not finite, or SIZE_MAX.
+/// Converts `count` elements from `first` on into a packed array. Normalized integers are mapped to 0..1 or -1..1.
+/// Returns the number of the first element among all that is not finite, or SIZE_MAX.
 size_t to_floats(const Elements& elements, size_t first, size_t count, float* out);
 
 [[noreturn]] void fail_not_finite(const Elements& elements, size_t element, const std::string& where);
 
-/// All of them. Throws Error where a value is not finite.
+/// All elements of an accessor as floats. Throws Error if a value is not finite.
 struct Floats {
   size_t count = 0;
   size_t components = 0;
@@ -48,10 +48,10 @@ Floats read_floats(const Gltf& gltf, int accessor, size_t least_components, size
 /// Unsigned integers of a scalar accessor, each below `end`. Throws Error.
 std::vector<uint32_t> read_indices(const Gltf& gltf, int accessor, uint64_t end, const std::string& where);
 
-/// Calls `work(first, count)` for blocks of `count` items, side by side where there are many.
+/// Calls `work(first, count)` for blocks of `count` items, in parallel if there are many.
 void for_blocks(size_t count, const std::function<void(size_t, size_t)>& work);
 
-/// The first number that a block reports, in the order of numbers and not of time; SIZE_MAX: none.
+/// The smallest number that any block reports, whichever reports first in time; SIZE_MAX: none.
 class FirstFault {
  public:
   void note(size_t at);

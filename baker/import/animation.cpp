@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samplers: times ascend, values are as many as the times ask for, rotations are unit quaternions.
+// Samplers: times ascend, the number of values suits that of the times, rotations are unit quaternions.
 #include "animation.h"
 
 #include <cmath>
@@ -81,7 +81,7 @@ AnimationChannel read_channel(const Gltf& gltf, const Json& sampler, AnimationPa
   return out;
 }
 
-/// Whether nobody has said when and where its keys are: an accessor without a buffer view is all zeros.
+/// Whether its keys have no data: an accessor without a buffer view is all zeros.
 bool lacks_data(const Gltf& gltf, const Json& sampler) {
   const auto lacks = [&](const char* key) {
     const tinygltf::Accessor& accessor = gltf.model.accessors[sampler[key].get<size_t>()];

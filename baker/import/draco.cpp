@@ -13,7 +13,7 @@
 namespace chandelier::baker {
 namespace {
 
-constexpr uint64_t most_per_byte = 2000;  // triangles and vertices that a byte can stand for
+constexpr uint64_t most_per_byte = 2000;  // triangles or vertices that one byte can encode
 
 struct Counts {
   uint64_t points = 0, triangles = 0;

@@ -83,7 +83,7 @@ bool is_shadowless(const Gltf& gltf, size_t number, Warnings& warnings) {
     return false;
   }
   std::span<const std::string_view> known = shadow;
-  if (has_light) known = {};  // the light's keys are told with the light
+  if (has_light) known = {};  // the light's import warns of its keys
   const auto extras = extras_of(gltf, node, here, known, warnings);
   return extras && !extras->boolean("shadow").value_or(true);
 }

@@ -18,7 +18,7 @@ const Json& json_of(const Gltf& gltf, size_t mesh, size_t primitive) {
   return gltf.json["meshes"][mesh]["primitives"][primitive];
 }
 
-/// Whether a buffer that the primitive needs is one whose data the file does not name: it comes by other ways.
+/// Whether the primitive needs a buffer whose data the file does not name. An application would supply it.
 bool lacks_data(const Gltf& gltf, const tinygltf::Primitive& primitive) {
   const auto lacks = [&](int accessor) {
     const int view = accessor < 0 ? -1 : gltf.model.accessors[static_cast<size_t>(accessor)].bufferView;
@@ -30,7 +30,7 @@ bool lacks_data(const Gltf& gltf, const tinygltf::Primitive& primitive) {
   return lacks(primitive.indices);
 }
 
-/// Why a primitive shows no triangles; empty where it may.
+/// Why a primitive shows no triangles; empty if it may show some.
 std::string reason_to_skip(const Gltf& gltf, const tinygltf::Primitive& primitive, bool compressed) {
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return "points and lines are skipped";
   if (!primitive.attributes.contains("POSITION")) return "has no POSITION and is skipped";

@@ -32,7 +32,7 @@ struct Gltf {
   Bytes container;                                // the glTF itself
   Json json;                                      // checked by check_gltf
   tinygltf::Model model;                          // the same, as structs; without buffers, images, skins, animations
-  std::vector<Buffer> buffers;                    // not present: an extension or nobody has the data
+  std::vector<Buffer> buffers;                    // not present if the data comes from an extension or is missing
   std::vector<Buffer> decoded_views;              // one per buffer view; present where an extension compresses it
 };
 
@@ -49,7 +49,7 @@ void check_extensions(const Json& json, const std::string& file, Warnings& warni
 /// "mesh 3 'name'", or "mesh 3" where it has no name. `section` is the glTF array ("meshes").
 std::string place(const Json& json, const char* section, size_t index);
 
-/// One of glTF's SCALAR to MAT4.
+/// Whether `type` is one of glTF's types, SCALAR to MAT4.
 bool is_accessor_type(const std::string& type);
 
 /// The bytes of a data URI or of a file beside the glTF, which is noted in files_read. `here`: the place in the file
@@ -62,10 +62,10 @@ void warn_of_buffers(const Gltf& gltf, Warnings& warnings);
 /// Whether the file says where the bytes of a buffer view are.
 bool is_present(const Gltf& gltf, int buffer_view);
 
-/// The bytes of a buffer view. Throws Error where they are not all there.
+/// The bytes of a buffer view. Throws Error if some are missing.
 std::span<const uint8_t> view_bytes(const Gltf& gltf, int buffer_view, const std::string& where);
 
-/// Part of a buffer; `what` begins the message where it is not all there. Throws Error.
+/// Part of a buffer. Throws Error, beginning with `what`, if the buffer is too short.
 std::span<const uint8_t> buffer_bytes(const Gltf& gltf, size_t buffer, uint64_t offset, uint64_t length,
                                       const std::string& what);
 

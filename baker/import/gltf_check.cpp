@@ -238,7 +238,7 @@ void check_tree(const Json& json, const std::string& file) {
       parent[c] = i;
     }
   }
-  std::vector<uint8_t> clear(count, 0);  // its way up to a root is known to end
+  std::vector<uint8_t> clear(count, 0);  // whether its path to a root is known to end
   for (size_t i = 0; i < count; ++i) {
     std::vector<size_t> way;
     size_t at = i;

@@ -13,11 +13,11 @@ void check_texture_transform(const Object& use);                      // KHR_tex
 void check_texture_sources(const Json& root, const Object& texture);  // KHR_texture_basisu, EXT_texture_webp
 void check_instancing(const Json& root, const Object& node);          // EXT_mesh_gpu_instancing
 
-/// What moves.
+/// Animations and skins.
 void check_animation(const Json& root, const Object& animation);
 void check_skin(const Json& root, const Object& skin);
 
-/// The name of the extension that compresses a buffer view, or nullptr. KHR_meshopt_compression is laid out alike.
+/// The name of the extension that compresses a buffer view, or nullptr. KHR_meshopt_compression has the same layout.
 const char* meshopt_extension(const Json& buffer_view);
 
 }  // namespace chandelier::baker

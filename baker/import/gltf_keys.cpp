@@ -16,7 +16,7 @@ struct Shape {
   std::map<std::string_view, const Shape*> keys;
 };
 
-/// Keys that lead to nothing of this kind.
+/// Keys whose values are not objects to check.
 Shape plain(std::initializer_list<std::string_view> keys) {
   Shape out;
   for (const std::string_view key : keys) out.keys[key] = nullptr;
@@ -30,7 +30,7 @@ Shape shape(std::initializer_list<std::string_view> keys,
   return out;
 }
 
-// Where it says nothing else, as in the specification's list of objects.
+// The keys are those of the specification's list of objects, unless a comment says otherwise.
 const Shape texture_info = plain({"index", "texCoord"});
 const Shape normal_texture = plain({"index", "texCoord", "scale"});
 const Shape occlusion_texture = plain({"index", "texCoord", "strength"});
@@ -103,11 +103,11 @@ size_t distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// The known key that is nearest, where one is near enough to be meant; or nothing.
+/// The nearest known key, if it is near enough to be a likely correction; else empty.
 std::string_view nearest(std::string_view key, const Shape& shape) {
   if (key.size() > 40) return {};
   std::string_view best;
-  size_t least = std::max<size_t>(2, key.size() / 3) + 1;  // a change of letters at most
+  size_t least = std::max<size_t>(2, key.size() / 3) + 1;  // one above the largest number of changed letters
   for (const auto& [known, of] : shape.keys) {
     const size_t far = distance(key, known);
     if (far < least && far < known.size()) least = far, best = known;
@@ -121,7 +121,7 @@ struct KeyLint {
 
   /// `place`: of the object, or of the one that it is in; empty for the glTF's own.
   void unknown(const std::string& place, std::string_view key, const Shape& shape) {
-    constexpr uint64_t most_told = 3;  // names of a warning that are shown
+    constexpr uint64_t most_told = 3;  // a warning shows this many names
     std::string name = (place.empty() ? "" : place + ": ") + shortened(std::string(key), 40);
     const std::string_view meant = told++ < most_told ? nearest(key, shape) : std::string_view();
     if (!meant.empty()) name += ", is it " + std::string(meant) + "?";

@@ -143,7 +143,7 @@ void lint_materials(const Lint& lint) {
   });
 }
 
-/// The node above each node, and the one above all of these.
+/// The parent and the root of each node.
 struct Family {
   std::vector<size_t> parent, root;
 };

@@ -28,7 +28,7 @@ struct Lint {
 /// Bytes of one element of a checked accessor; 0 for a type that glTF lacks.
 uint64_t element_bytes(const Json& accessor);
 
-/// A whole number under a key, or another where there is none.
+/// The whole number under a key, or `otherwise` if there is none.
 uint64_t whole(const Json& object, const char* key, uint64_t otherwise);
 
 void lint_meshes(const Lint& lint);

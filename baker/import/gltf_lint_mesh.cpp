@@ -59,7 +59,7 @@ struct MeshLint {
       say("indices' buffer view is of another target");
   }
 
-  /// One morph target; one that has a weight is read, and may fail.
+  /// Checks one morph target. If it has a weight, the importer reads it later and may refuse it.
   void target(const Json& target, const Json& attributes) const {
     for (const auto& [name, value] : target.items()) {
       const Json& accessor = lint.entry("accessors", value.get<size_t>());

@@ -164,7 +164,7 @@ tinygltf::Model parse_model(const Json& json, const std::string& file) {
   return model;
 }
 
-/// Holds nothing of its own: views on it are decoded from another (EXT_meshopt_compression).
+/// Whether the buffer has no data of its own: its views are decoded from another one (EXT_meshopt_compression).
 bool is_fallback(const Json& buffer) {
   static const Json::json_pointer ext("/extensions/EXT_meshopt_compression/fallback");
   static const Json::json_pointer khr("/extensions/KHR_meshopt_compression/fallback");

@@ -39,7 +39,7 @@ uint32_t skin_of(const Import& in, const tinygltf::Node& node) {
   return node.skin < 0 ? no_index : in.motion.skin[static_cast<size_t>(node.skin)];
 }
 
-/// Of a skin that nothing moves; else nullptr.
+/// The pose of the node's skin if nothing moves that; else nullptr.
 const Pose* pose_of(const Import& in, const tinygltf::Node& node) {
   if (node.skin < 0) return nullptr;
   const Pose& pose = in.motion.pose[static_cast<size_t>(node.skin)];
@@ -130,7 +130,7 @@ std::vector<std::vector<ReadPrimitive>> read_primitives(const Import& in) {
   return out;
 }
 
-/// The joints that a mesh asks for; 0 and no joints at all where not every vertex has some.
+/// Returns the number of joints that a mesh refers to. If a vertex has none, removes all joints and returns 0.
 uint32_t settle_joints(Mesh& mesh) {
   uint32_t count = 0;
   const bool all = std::all_of(mesh.primitives.begin(), mesh.primitives.end(), [](const Primitive& primitive) {
@@ -145,7 +145,7 @@ uint32_t settle_joints(Mesh& mesh) {
   return count;
 }
 
-/// Throws Error where a node's mesh asks for joints that its skin lacks.
+/// Throws Error if a node's mesh refers to joints that its skin lacks.
 void check_joints(const Import& in, size_t node, uint32_t asked, size_t joints) {
   if (asked <= joints) return;
   fail(in.gltf.file + ": " + place(in.gltf.json, "nodes", node),
@@ -191,7 +191,7 @@ void place_by_skin(const Import& in, const PlacedNode& placed, const MeshUse& me
     return;
   }
   if (posed) {
-    instance.node = no_index;  // which glTF leaves out of account
+    instance.node = no_index;  // glTF ignores the node's transform
   } else {
     check_joints(in, placed.node, mesh.joint_count, in.scene.skins[skin].joints.size());
   }
@@ -264,7 +264,7 @@ ImportCounts import_gltf(const std::filesystem::path& path, Scene& scene, Warnin
                          const ImportSettings& settings) {
   try {
     return import_file(path, scene, warnings, settings);
-  } catch (const Json::exception& error) {  // of a key that no check asks for
+  } catch (const Json::exception& error) {  // from a key that no check covers
     fail(path.string(), std::string("is not a glTF that can be read: ") + error.what());
   }
 }

@@ -11,7 +11,7 @@
 namespace chandelier::baker {
 
 struct ImportSettings {
-  std::string scene;  // name or number of the glTF's scene, where it has several; empty: the one that it shows first
+  std::string scene;  // name or number of the glTF's scene, where it has several; empty: the default scene
 };
 
 /// Counts of an import.

@@ -10,7 +10,8 @@
 
 namespace chandelier::baker {
 
-/// Where the node's mesh stands, in the node's own space; nothing for a node without the extension. Throws Error.
+/// The transforms of the instances of the node's mesh, in the node's space; nothing for a node without the extension.
+/// Throws Error.
 std::optional<std::vector<glm::dmat4>> read_instances(const Gltf& gltf, size_t node);
 
 }  // namespace chandelier::baker

@@ -25,7 +25,7 @@ std::optional<double> range_in(const Extras& extras, const char* key) {
 }
 
 void warn_of_range(const Gltf& gltf, const Light& light, const std::string& here, Warnings& warnings) {
-  if (light.type == LightType::directional) return;  // which has none
+  if (light.type == LightType::directional) return;  // a sun has no range
   warnings.add(gltf.file, here, "a light's range of 0 is taken as none: it ends where --range-threshold says");
 }
 
@@ -50,7 +50,7 @@ void read_extras(const Gltf& gltf, const Json& owner, const std::string& here, L
 /// Turns the light to its node's -Z. False where the node has no direction and the light needs one.
 bool aim(const PlacedNode& placed, Light& light) {
   const glm::dvec3 direction = world_direction(placed.world_from_local, {0, 0, -1});
-  if (direction == glm::dvec3(0)) return light.type == LightType::point;  // which keeps its own
+  if (direction == glm::dvec3(0)) return light.type == LightType::point;  // a point light needs none
   light.direction_ws = glm::vec3(direction);
   return true;
 }

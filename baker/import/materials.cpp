@@ -29,7 +29,7 @@ Wrap wrap_of(int gltf_wrap, const std::string& where) {
   }
 }
 
-/// -1 is absent: linear. The mipmap choice has no answer in a pack: all levels are there.
+/// -1 means absent, so linear. The choice of mipmaps is ignored, since a pack has all levels.
 Filter filter_of(int gltf_filter, const std::string& where) {
   switch (gltf_filter) {
     case TINYGLTF_TEXTURE_FILTER_NEAREST:
@@ -100,7 +100,7 @@ uint32_t Materials::add_material(int index) {
     const Json& json = gltf_.json["materials"][static_cast<size_t>(index)];
     out.unlit = json.contains(Json::json_pointer("/extensions/KHR_materials_unlit"));
     static const Json::json_pointer glossy_pointer("/extensions/KHR_materials_pbrSpecularGlossiness");
-    if (json.contains(glossy_pointer)) {  // which the extension prefers, where a material has both
+    if (json.contains(glossy_pointer)) {  // the extension takes precedence if a material has both
       convert(json[glossy_pointer], in.alphaMode == "MASK", here, out);
     } else {
       const Json metallic_roughness = json.value("pbrMetallicRoughness", Json::object());
@@ -195,7 +195,7 @@ void Materials::convert(const Json& glossy, bool alpha, const std::string& here,
   out.base_color_factor = {plain.base_color, diffuse_factor[3]};
   out.metallic_factor = plain.metallic;
   out.roughness_factor = 1 - factors.glossiness_factor;
-  if (!mirrored && (!colored || is_dielectric(factors.specular_factor))) {  // then the conversion is a factor
+  if (!mirrored && (!colored || is_dielectric(factors.specular_factor))) {  // the conversion then only changes factors
     out.base_color = diffuse;
     return;
   }

@@ -27,13 +27,13 @@ class Materials {
  private:
   uint32_t add_material(int material);
   void read_transmission(const Json& material, const std::string& here, Material& out);
-  /// The texture that `owner` names under `key`; `alpha`: its alpha decides where there is a surface.
+  /// The texture that `owner` names under `key`; `alpha`: its alpha is tested.
   TextureUse use_texture(const Json& owner, const char* key, bool alpha, const std::string& here);
   /// The image of a texture, where it has one that can be read.
   std::optional<uint32_t> image_of(const Json& texture, bool alpha, const std::string& where);
-  /// KHR_materials_pbrSpecularGlossiness, `glossy`, as the metallic-roughness that is nearest to it.
+  /// Converts `glossy`, a KHR_materials_pbrSpecularGlossiness, to the nearest metallic-roughness material.
   void convert(const Json& glossy, bool alpha, const std::string& here, Material& out);
-  /// The image that a texture of `factors` is converted to, and a texture of it like `like`.
+  /// Adds the image that the textures of `factors` are converted to, and a texture of it that is otherwise like `like`.
   uint32_t use_converted(const SpecularGlossiness& factors, const TextureUse& like);
   uint32_t use_image(size_t image);
   uint32_t add_texture(size_t texture, uint32_t image);

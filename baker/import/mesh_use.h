@@ -14,17 +14,17 @@ namespace chandelier::baker {
 /// A glTF mesh in one shape. Nodes that show the same one share it.
 struct MeshShape {
   size_t mesh = 0;
-  uint32_t morph_weights = 0;  // their number among all
-  size_t posed_by = SIZE_MAX;  // glTF's number of a skin that nothing moves; SIZE_MAX: of none
+  uint32_t morph_weights = 0;  // their number in MorphWeights
+  size_t posed_by = SIZE_MAX;  // glTF's number of its skin, if nothing moves that; else SIZE_MAX
 
   auto operator<=>(const MeshShape&) const = default;
 };
 
 struct MeshUse {
   uint32_t number = no_index;  // of Scene::meshes
-  size_t first_node = 0;       // that shows it
-  bool skinned = false;        // by one node at least
-  uint32_t joint_count = 0;    // that its vertices ask for; 0 where not all of them have joints
+  size_t first_node = 0;       // the first node that shows it
+  bool skinned = false;        // whether at least one node shows it with a skin
+  uint32_t joint_count = 0;    // that its vertices refer to; 0 if some of them have no joints
 };
 
 using MeshUses = std::map<MeshShape, MeshUse>;

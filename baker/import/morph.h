@@ -29,11 +29,11 @@ class MorphWeights {
   const Gltf& gltf_;
   std::map<std::vector<double>, uint32_t> numbers_;
   std::vector<const std::vector<double>*> by_number_;  // keys of numbers_
-  std::map<size_t, uint32_t> of_mesh_;                 // those that were asked for
+  std::map<size_t, uint32_t> of_mesh_;                 // weights of meshes that have been looked up
 };
 
-/// Adds what a primitive's targets move to `morphed`, in vertices, before anything of it is read. Throws Error where
-/// weights do not suit targets, or above 2^30.
+/// Adds the number of vertices that a primitive's targets move to `morphed`, before any of them is read. Throws Error
+/// if there is not one weight per target, or above 2^30 vertices.
 void add_morph_size(const Gltf& gltf, const tinygltf::Primitive& primitive, std::span<const double> weights,
                     const std::string& where, uint64_t& morphed);
 
@@ -41,7 +41,7 @@ void add_morph_size(const Gltf& gltf, const tinygltf::Primitive& primitive, std:
 /// more. Throws Error.
 bool apply_morphs(const VertexSource& source, Primitive& out);
 
-/// The first attribute that targets with a weight change and that keeps its base, or "".
+/// The first attribute that weighted targets change but apply_morphs does not, or "".
 std::string unread_morph(const VertexSource& source);
 
 }  // namespace chandelier::baker

@@ -20,7 +20,7 @@ bool carries(const tinygltf::Node& node, bool visible) {
   return visible && (node.mesh >= 0 || node.extensions.contains("KHR_lights_punctual"));
 }
 
-/// The parts of a rest pose that has a matrix: as near as they come, since nothing animates such a node.
+/// Decomposes the matrix of a rest pose. An approximation is enough, since nothing animates such a node.
 void decompose(const glm::dmat4& m, Node& out) {
   out.translation = glm::dvec3(m[3]);
   glm::dmat3 axes(m);
@@ -106,8 +106,8 @@ bool moves(const Motion& motion, const Json& skin) {
                      [&](const Json& joint) { return motion.moves[joint.get<size_t>()] != 0; });
 }
 
-/// Whether joints that stand as they do show a mesh as its bind pose, moved as a whole. `places`: the joints' in the
-/// world. What is compared is as far from the first joint as the skin is large, wherever in the world it stands.
+/// Whether the joints show a mesh in its bind pose, moved as a whole. `places`: the positions of the joints in the
+/// world. The tolerance depends on the skin's size around its first joint, not on its distance from the origin.
 bool is_bind_pose(const std::vector<glm::dmat4>& world_from_bind, const std::vector<glm::dvec3>& places) {
   constexpr double rounding = 1e-4, least_m = 0.01;  // of inverse bind matrices, which are floats
   const auto largest = [](const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
@@ -123,7 +123,7 @@ bool is_bind_pose(const std::vector<glm::dmat4>& world_from_bind, const std::vec
   });
 }
 
-/// Skins whose joints an animation moves go into the scene; of others only the pose is kept.
+/// Adds skins whose joints an animation moves to the scene; keeps only the pose of the others.
 void add_skin(const Gltf& gltf, size_t number, const std::vector<glm::dmat4>& world, Motion& motion, Scene& scene,
               Warnings& warnings) {
   const Json& json = gltf.json["skins"][number];

@@ -9,7 +9,8 @@
 namespace chandelier::baker {
 namespace {
 
-// A little beyond 1e-9 and 1e9, which are baked: 1e-9 cubed, and flattened by another 1e-9, is still a normal float.
+// Slightly wider than 1e-9 to 1e9, so that both limits are still baked. 1e-9 cubed, flattened by another 1e-9, is still
+// a normal float.
 constexpr double least_scale = 0.999e-9, most_scale = 1.001e9;
 
 glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where) {

@@ -32,7 +32,7 @@ int move(const Pose& pose, const SkinVertex& bound, Vertex& vertex) {
   vertex.position_ls = glm::vec3(glm::dvec3(world * glm::dvec4(vertex.position_ls, 1)) - pose.origin_ws);
   const glm::dvec3 normal = cofactors(glm::dmat3(world)) * glm::dvec3(vertex.normal_ls) * double(side);
   const double length = glm::length(normal);
-  if (length > 0 && std::isfinite(length)) vertex.normal_ls = glm::vec3(normal / length);  // else flat: any will do
+  if (length > 0 && std::isfinite(length)) vertex.normal_ls = glm::vec3(normal / length);  // else any normal will do
   const glm::dvec3 tangent = glm::dmat3(world) * glm::dvec3(vertex.tangent_ls);
   const double stretch = glm::length(tangent);
   const bool has_tangent = stretch > 0 && std::isfinite(stretch);

@@ -14,7 +14,7 @@ namespace chandelier::baker {
 /// all.
 std::array<uint16_t, 4> quantize_weights(const std::array<float, 4>& weights);
 
-/// JOINTS_0 and WEIGHTS_0 of every vertex. A joint without weight is joint 0. Throws Error; what is mended is told in
+/// JOINTS_0 and WEIGHTS_0 of every vertex. A joint without weight is joint 0. Throws Error; repairs are reported in
 /// `warnings`.
 std::vector<SkinVertex> read_skin_vertices(const Elements& joints, const Elements& weights, const std::string& where,
                                            std::vector<std::string>& warnings);

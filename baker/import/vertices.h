@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A primitive's attributes, put together into vertices.
+// Builds vertices from a primitive's attributes.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace chandelier::baker {
 struct VertexSource {
   const Gltf& gltf;
   const tinygltf::Primitive& primitive;
-  const DracoPrimitive* draco;  // nullptr, or where some of the attributes are
+  const DracoPrimitive* draco;  // holds some of the attributes; may be nullptr
   const std::string& where;
   size_t vertex_count;
   std::span<const double> morph_weights;  // one per morph target, or none
@@ -25,7 +25,7 @@ Elements attribute_of(const VertexSource& source, const char* name, size_t least
 /// Unit length, or zero where it has no direction.
 glm::vec3 unit_or_zero(const glm::vec3& v);
 
-/// Any unit tangent across the normal.
+/// Any unit vector orthogonal to the normal.
 glm::vec3 some_tangent(const glm::vec3& normal);
 
 /// Fills the primitive's vertices; its indices must be there. Throws Error.

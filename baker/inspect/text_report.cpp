@@ -58,7 +58,7 @@ void put_sections(Out out, const pack::View& view, const Summary& summary) {
   }
 }
 
-/// "37.5 %" of what there is.
+/// A share as "37.5 %".
 std::string share(uint64_t part, uint64_t whole) {
   return fmt::format("{:.1f} %", whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole));
 }

@@ -28,7 +28,7 @@ class Bill:
 
 
 def mib(size_bytes):
-    """Whole MiB where it is some; a tenth where it is less than ten."""
+    """In whole MiB; with one decimal below ten, unless the number is whole."""
     value = size_bytes / MIB
     return f"{value:.0f}" if value >= 10 or value == int(value) else f"{value:.1f}"
 
@@ -38,7 +38,8 @@ def _counted(count, what):
 
 
 def header(bill, budget_maps=0, budget_mib=0):
-    """80 lights → 26 shadow maps, 156 MiB of 200; a budget of 0 is none. Lights out of view or without shadow are named as such."""
+    """For instance: 80 lights → 26 shadow maps, 156 MiB of 200. A budget of 0 is no budget. Lights out of view or without shadow
+    are counted apart."""
     lights = _counted(bill.lights, "light")
     if bill.lights_in_view != bill.lights:
         lights += f", {bill.lights_in_view} in view"
@@ -50,7 +51,7 @@ def header(bill, budget_maps=0, budget_mib=0):
 
 
 def over_budget_line(bill, names):
-    """What the budget does to the lights, or an empty text. `names`: of those that lose their own map."""
+    """What the budget does to the lights, or an empty text. `names`: the lights that lose their own map."""
     if not bill.over_budget:
         return ""
     wanted = f"{_counted(bill.wanted_shadow_maps, 'map')}, {mib(bill.wanted_shadow_bytes)} MiB wanted"

@@ -29,7 +29,7 @@ TYPES = ("point", "spot", "directional")
 CLUSTER = np.dtype([("center", "<u4"), ("light_count", "<u4"), ("d_min_m", "<f4"), ("range_m", "<f4"),
                     ("spread_m", "<f4")])
 
-# Of a table of lights: column of the C interface, attributes that may hold it, type, numbers a light. The first must be there.
+# Columns of a table of lights: name in the C interface, attributes that may hold it, type, numbers per light. The first is required.
 COLUMNS = (("position", ("position",), np.float32, 3), ("direction", ("direction",), np.float32, 3),
            ("type", ("type",), np.uint8, 1), ("intensity", ("intensity",), np.float32, 1),
            ("color", ("colour", "color"), np.float32, 3), ("range_m", ("range_m",), np.float32, 1),
@@ -38,7 +38,7 @@ COLUMNS = (("position", ("position",), np.float32, 3), ("direction", ("direction
 
 
 class PreviewError(Exception):
-    """One line that a user can read."""
+    """Its text is one line for the user."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Camera:
-    """In the lights' frame. Without `forward` all lights are in view, and only the place counts."""
+    """In the coordinates of the lights. Without `forward` all lights are in view, and only the position counts."""
     eye: tuple
     forward: tuple = None
     up: tuple = (0.0, 0.0, 1.0)
@@ -69,10 +69,10 @@ class Camera:
 
 @dataclass
 class Selection:
-    """Of every light, in the table's order."""
+    """Arrays with one entry per light, in the table's order, and the clusters."""
     center: np.ndarray  # i4: the light whose map it takes, -1 out of view, without shadow, or where it gives no light
     range_m: np.ndarray  # f4: as used, derived where none was given; 0 for directional lights
-    over_budget: np.ndarray  # bool: the budget takes the map that it would have to itself
+    over_budget: np.ndarray  # bool: whether the budget takes away the map that it would have alone
     clusters: np.ndarray  # of CLUSTER, in ascending order of centre
     bill: Bill
 
@@ -103,7 +103,7 @@ _Result = _structure("Result", ("struct_bytes", _u32), ("capacity", _u32), ("cen
 
 
 def _column(table, names, kind, parts, count):
-    """An array of the column that memory can be read from, without a copy where that goes; None where there is none."""
+    """The column as an array that C can read, not copied if possible; None if the table lacks it."""
     values = next((getattr(table, name) for name in names if getattr(table, name, None) is not None), None)
     if values is None:
         return None
@@ -117,7 +117,7 @@ def _column(table, names, kind, parts, count):
 
 
 def _columns(table):
-    """Name -> array, of those that the table has."""
+    """Name -> array, for the columns that the table has."""
     count = len(table.position)
     columns = {name: _column(table, names, kind, parts, count) for name, names, kind, parts in COLUMNS}
     if columns["flags"] is not None:
@@ -147,14 +147,14 @@ def _camera(camera):
 
 
 def _bill(values):
-    """`values` has an attribute or a key for each field."""
+    """A Bill from `values`, which has an attribute or a key for each field."""
     get = values.__getitem__ if isinstance(values, dict) else lambda name: getattr(values, name)
     return Bill(**{field.name: bool(get(field.name)) if field.type in (bool, "bool") else get(field.name)
                    for field in fields(Bill)})
 
 
 class Library:
-    """libchandelier_preview, loaded. Raises PreviewError where it is none or of another version."""
+    """libchandelier_preview, loaded. Raises PreviewError if the file is no such library or of another version."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -210,7 +210,7 @@ def _request(table, settings, camera):
             "up_ws": list(map(float, camera.up)), "size_px": list(camera.size_px)}
     if camera.forward is not None:
         seen["forward_ws"] = list(map(float, camera.forward))
-    # NaN and infinities are no JSON. The library names the light that has one.
+    # JSON has no NaN and no infinities. The library would name the light that has one.
     try:
         return json.dumps({"lights": lights, "settings": asked, "camera": seen}, allow_nan=False)
     except ValueError as error:
@@ -218,7 +218,7 @@ def _request(table, settings, camera):
 
 
 class Program:
-    """chandelier-lights: the same by a process for each selection."""
+    """chandelier-lights: gives the same results as the library, with one process per selection."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -263,8 +263,8 @@ def default_folders():
 
 
 def find(folders=()):
-    """The library, else the program, of the first folder that has one that works; then a program in PATH. Raises
-    PreviewError, which says what was wrong with each."""
+    """The library of the first folder where it works, else the program of the first folder that has it, else a program in PATH.
+    Raises PreviewError, which says what was wrong with each library."""
     faults = []
     places = [pathlib.Path(folder) for folder in folders] + default_folders()
     for path in (folder / library_name() for folder in places):

@@ -11,7 +11,7 @@ import numpy as np
 from . import light_table, photometry
 
 TYPES = {"point": photometry.POINT, "spot": photometry.SPOT, "directional": photometry.DIRECTIONAL}
-NEAR_M = 1e-3  # places go through decomposed matrices and decimal numbers
+NEAR_M = 1e-3  # tolerance: positions are written as decomposed matrices and decimal numbers
 
 
 @dataclass
@@ -23,7 +23,7 @@ class Check:
 
 
 def read_json(path):
-    """Of a .gltf or .glb; ValueError says what is wrong with the file."""
+    """The JSON of a .gltf or .glb. Raises ValueError, which says what is wrong with the file."""
     data = pathlib.Path(path).read_bytes()
     if data[:4] == b"glTF":
         if len(data) < 20 or data[16:20] != b"JSON":
@@ -49,7 +49,7 @@ def matrix_of(node):
 
 
 def placed_lights(gltf):
-    """(node's name, world matrix, light) of each node that places one."""
+    """(node's name, world matrix, light) of each node with a light."""
     lights = gltf.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", [])
     nodes, found = gltf.get("nodes", []), []
     scenes = gltf.get("scenes", [])
@@ -66,7 +66,7 @@ def placed_lights(gltf):
 
 
 def to_gltf(vectors):
-    """Blender's Z up as glTF's Y up."""
+    """Converts from Blender's Z up to glTF's Y up."""
     return np.stack((vectors[:, 0], vectors[:, 2], -vectors[:, 1]), axis=1).astype(float)
 
 
@@ -83,7 +83,7 @@ def check_shadows(gltf, objects, materials):
 
 
 def check(path, table, objects, materials):
-    """`table`: the LightTable that was meant; `objects`, `materials`: which cast shadows, as shadows.meant has it."""
+    """`table`: the LightTable that was to be exported; `objects`, `materials`: which cast shadows, see shadows.meant."""
     gltf = read_json(path)
     result = check_lights(gltf, table)
     result.errors += check_shadows(gltf, objects, materials)
@@ -103,7 +103,7 @@ def check_lights(gltf, table):
         apart = np.linalg.norm(positions - wanted[row], axis=1)
         near = free & (types == table.type[row]) & (apart < NEAR_M * (1 + np.linalg.norm(wanted[row])))
         if table.type[row] == photometry.DIRECTIONAL:
-            near = free & (types == table.type[row])  # a sun is everywhere
+            near = free & (types == table.type[row])  # a sun has no position
         if not near.any():
             result.errors.append(f"{name}: is not in the file where it should be")
             continue
@@ -147,7 +147,7 @@ def differences(table, row, way, matrix, light):
 
 
 def extras_differences(table, row, extras):
-    """The artist's settings. Groups are only numbers in the table, so that a name is there or not."""
+    """Compares the artist's settings. The table has only numbers of groups, so only the presence of a name is compared."""
     flags = int(table.flags[row])
     meant = {"priority": int(table.priority[row]), "dynamic": bool(flags & light_table.DYNAMIC),
              "cluster": not flags & light_table.OWN_MAP, "shadow": not flags & light_table.NO_SHADOW}

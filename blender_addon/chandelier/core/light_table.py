@@ -7,10 +7,10 @@ import numpy as np
 
 from . import photometry
 
-DYNAMIC, OWN_MAP, NO_SHADOW, MOVES = 1, 2, 4, 8  # flags; MOVES: the exported file moves it, which makes it dynamic unsaid
+DYNAMIC, OWN_MAP, NO_SHADOW, MOVES = 1, 2, 4, 8  # flags; MOVES: the exported file animates it, which implies dynamic
 NO_GROUP = -1
 
-# What a light's data-block says, whatever the number of places it shines from.
+# The properties of a light's data-block, which all objects that use it share.
 DATA = np.dtype([
     ("type", "u1"),  # photometry.POINT, SPOT, DIRECTIONAL
     ("flags", "u1"),
@@ -19,8 +19,8 @@ DATA = np.dtype([
     ("intensity", "<f4"),  # candela, or lux of a directional light
     ("colour", "<f4", 3),  # linear, brightest part at most 1
     ("range_m", "<f4"),  # 0: to be derived
-    ("radius_m", "<f4"),  # of a sun the tangent of half its angle
-    ("spot_outer_rad", "<f4"),  # half angle; pi where there is no cone
+    ("radius_m", "<f4"),  # for a sun: the tangent of half its angle
+    ("spot_outer_rad", "<f4"),  # half angle; pi if there is no cone
     ("power_w", "<f4"),
 ])
 
@@ -29,7 +29,7 @@ DATA = np.dtype([
 class LightTable:
     """Blender's world frame: metres, Z up. Columns are contiguous."""
     position: np.ndarray  # f4 (n, 3)
-    direction: np.ndarray  # f4 (n, 3), unit length: where a spot or sun shines to
+    direction: np.ndarray  # f4 (n, 3), unit length: the direction in which a spot or sun shines
     type: np.ndarray
     flags: np.ndarray
     priority: np.ndarray
@@ -41,7 +41,7 @@ class LightTable:
     spot_outer_rad: np.ndarray
     power_w: np.ndarray
     names: list  # unique; an instance's is "instancer/light"
-    owners: list  # the name of the object that is selected for it: the light's own, or its instancer's
+    owners: list  # the name of the object to select for it: the light itself, or its instancer
 
     def __len__(self):
         return len(self.names)
@@ -63,12 +63,12 @@ def make_table(matrices, data, names, owners):
 
 
 def moved(table, matrices):
-    """The same lights elsewhere."""
+    """The same lights at other positions."""
     return replace(table, **frames(matrices))
 
 
 def unique(names):
-    """The same names, with a number after those that were there before."""
+    """The same names; repeated ones get a number at the end."""
     if len(set(names)) == len(names):
         return names
     taken, numbers, first, out = set(names), {}, set(), []

@@ -5,19 +5,19 @@ import math
 
 import numpy as np
 
-RANGE_THRESHOLD_LX = 0.05  # chandelier-bake's --range-threshold: where a light ends that has no range
-LUMENS_PER_WATT = 683.0  # what glTF exporters take: that of light of 555 nm
+RANGE_THRESHOLD_LX = 0.05  # chandelier-bake's --range-threshold: the illuminance at which a light without a range ends
+LUMENS_PER_WATT = 683.0  # used by glTF exporters: the value for light of 555 nm
 POINT, SPOT, DIRECTIONAL = range(3)
 
 
 def intensity_of(kind, power_w):
-    """Candela of a point or spot light's watts, which Blender spreads over the whole sphere for both; lux of a sun's W/m²."""
+    """Candela of a point or spot light, whose watts Blender spreads over the whole sphere; lux of a sun, whose power is in W/m²."""
     luminous = LUMENS_PER_WATT * power_w
     return luminous if kind == DIRECTIONAL else luminous / (4 * math.pi)
 
 
 def range_of(intensity_cd, illuminance_lx):
-    """Metres at which a light's illuminance has fallen to this."""
+    """The distance in metres at which a light's illuminance has fallen to `illuminance_lx`."""
     return math.sqrt(intensity_cd / illuminance_lx)
 
 
@@ -51,6 +51,6 @@ def xyz_of_temperature(kelvin):
 
 
 def colour_of_temperature(kelvin):
-    """Linear RGB whose brightest part is 1; what the primaries cannot show is cut off."""
+    """Linear RGB whose largest component is 1; negative components become 0."""
     rgb = np.maximum(RGB_OF_XYZ @ xyz_of_temperature(kelvin), 0)
     return tuple(float(part) for part in rgb / rgb.max())

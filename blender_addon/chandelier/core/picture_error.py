@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-APART = 0.1  # relative, from which two pixels are not alike
-DARK = 0.05  # of the mean: what is darker is measured against this much
+APART = 0.1  # relative difference above which two pixels count as different
+DARK = 0.05  # times the mean: differences of darker pixels are divided by this
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class Error:
     mean: float  # of the whole picture against the reference's: 0.02 is 2 % too bright
     mean_absolute: float  # of each pixel's difference, over the reference's mean
     rmse: float  # over the reference's mean
-    apart: float  # part of the pixels that differ by more than APART
+    apart: float  # share of the pixels that differ by more than APART
 
     def line(self):
         return (f"mean {100 * self.mean:+.1f} %, mean difference {100 * self.mean_absolute:.1f} %, RMSE {100 * self.rmse:.1f} %, "
@@ -24,7 +24,7 @@ class Error:
 
 
 def read_pfm(path):
-    """A colour PFM. ValueError where it is none."""
+    """Reads a colour PFM. Raises ValueError if the file is none."""
     data = open(path, "rb").read()
     head = re.match(rb"PF\s+(\d+)\s+(\d+)\s+(-?[\d.]+)\s", data)
     if not head:
@@ -38,8 +38,8 @@ def read_pfm(path):
 
 
 def relative(reference, ours):
-    """(height, width): the largest difference of a pixel's parts over its brightness, which counts as DARK of the mean at
-    least."""
+    """(height, width): the largest difference among a pixel's channels, divided by its brightness, but at least by DARK times the
+    mean."""
     floor = DARK * reference.mean()
     return np.abs(ours - reference).max(2) / np.maximum(np.maximum(reference.max(2), ours.max(2)), max(floor, 1e-30))
 
@@ -54,20 +54,20 @@ def error_of(reference, ours):
 
 
 def mean_and_noise(one, other):
-    """Of two renders that differ by their samples alone: their mean, and the mean difference of a pixel that is noise in it,
-    over its brightness."""
+    """For two renders that differ only by noise: their mean, and the mean difference of a pixel due to noise, divided by the mean
+    brightness."""
     mean = (one + other) / 2
     return mean, float(np.abs(one - other).mean(dtype=np.float64)) / 2 / max(float(mean.mean(dtype=np.float64)), 1e-30)
 
 
 def shown(picture, white):
-    """sRGB, 0 to 1, with `white` as the brightest."""
+    """Encodes as sRGB, 0 to 1; `white` becomes 1."""
     linear = np.clip(picture / white, 0, 1)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
 def heat(values):
-    """0 black, over blue and red, to 1 white."""
+    """A colour scale: 0 is black, then blue, red and yellow, and 1 is white."""
     stops = np.array(((0, 0, 0), (0.1, 0.1, 0.7), (0.8, 0.1, 0.3), (1, 0.7, 0.1), (1, 1, 1)))
     place = np.clip(values, 0, 1) * (len(stops) - 1)
     low = np.minimum(place.astype(int), len(stops) - 2)
@@ -76,7 +76,7 @@ def heat(values):
 
 
 def sheet(reference, ours):
-    """The reference, ours, and each pixel's error, of which 2 * APART is white; f4, sRGB, side by side."""
+    """The reference, our picture and the error of each pixel (white: 2 * APART), side by side; f4, sRGB."""
     white = max(float(np.percentile(reference.max(2), 99)), 1e-30)
     gap = np.ones((reference.shape[0], 4, 3))
     error = heat(relative(reference, ours) / (2 * APART))

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-TRIES = 40  # points thrown for each that is wanted, before a volume counts as full
-FILLING = 1000  # points thrown at once where as many are wanted as there is room for
+TRIES = 40  # random points per wanted point, before a volume counts as full
+FILLING = 1000  # random points per attempt if as many are wanted as there is room for
 MOST = 20000
 
 
 def polylines(edges, count):
-    """Chains of vertices that edges make, each (indices, closed): what is left of splines turned to a mesh."""
+    """The chains of vertices that edges form, each as (indices, closed). Splines converted to a mesh become such chains."""
     neighbours = [[] for _ in range(count)]
     for a, b in edges:
         neighbours[a].append(b)
@@ -32,7 +32,7 @@ def polylines(edges, count):
 
 
 def along(points, closed=False, count=0, spacing=0.0):
-    """`count` points along a line, its ends among them, or points `spacing` apart from its start on; with the line's
+    """`count` points along a line, including its ends, or points `spacing` apart from its start on; and the line's
     directions there."""
     points = np.asarray(points, float).reshape(-1, 3)
     if closed:
@@ -56,7 +56,7 @@ def along(points, closed=False, count=0, spacing=0.0):
 
 
 def ring(centre, radius, count=0, spacing=0.0):
-    """Points on a level circle, `count` of them or as many as keep `spacing` along it; with the ways outwards."""
+    """Points on a horizontal circle, `count` of them or as many as fit `spacing` apart; and the directions outwards."""
     if spacing > 0:
         count = max(1, int(2 * math.pi * radius / spacing + 1e-9))
     angles = np.arange(count) * (2 * math.pi / max(count, 1))
@@ -65,13 +65,13 @@ def ring(centre, radius, count=0, spacing=0.0):
 
 
 class Apart:
-    """Points no two of which are closer than a distance, in cells of that size."""
+    """A set of points of which no two are closer than a distance; stored in cells of that size."""
 
     def __init__(self, distance):
         self.distance, self.cells = distance, {}
 
     def take(self, point):
-        """Whether it is far enough from all before; then it is one of them."""
+        """Adds the point if it is far enough from all others. Returns whether it was added."""
         if self.distance <= 0:
             return True
         x, y, z = (math.floor(part / self.distance) for part in point)
@@ -86,8 +86,8 @@ class Apart:
 
 
 def thinned(points, distance, count, rng):
-    """Numbers of at most `count` points (0: any number) that are `distance` apart, in their order: at random, so that they are
-    everywhere."""
+    """The numbers of at most `count` points (0: any number) that are `distance` apart, in ascending order. They are chosen at random,
+    so that they are spread over all points."""
     apart, chosen = Apart(distance), []
     for number in rng.permutation(len(points)):
         if count and len(chosen) == count:
@@ -99,7 +99,7 @@ def thinned(points, distance, count, rng):
 
 def scattered(lower, upper, distance, count, rng, inside=None):
     """Up to `count` points in a box (0: as many as there is room for, up to MOST), `distance` apart; `inside`: (n, 3) -> which of
-    them count. Fewer where no more fit."""
+    them are in the volume. Fewer if no more fit."""
     lower, upper = np.asarray(lower, float), np.asarray(upper, float)
     apart, points, tried = Apart(distance), [], 0
     while tried < TRIES * (count or max(len(points), FILLING // TRIES)):
@@ -116,7 +116,7 @@ def scattered(lower, upper, distance, count, rng, inside=None):
 
 
 def jittered(points, amount, rng):
-    """Each point moved at random within a ball."""
+    """Moves each point at random within a ball of radius `amount`."""
     points = np.asarray(points, float).reshape(-1, 3)
     ways = rng.normal(size=points.shape)
     lengths = np.linalg.norm(ways, axis=1, keepdims=True)

@@ -11,30 +11,31 @@ from .light_table import NO_SHADOW
 
 CIRCLE_SEGMENTS = 48
 LEAST_SEGMENTS = 12
-MOST_FINE_SPHERES = 250  # with more, each gets fewer segments
+MOST_FINE_SPHERES = 250  # if there are more, each gets fewer segments
 OUT_OF_VIEW = (0.45, 0.45, 0.45, 0.6)
 WITHOUT_SHADOW = (1.0, 0.95, 0.65, 0.8)  # paler than any cluster's
 OVER_BUDGET = (1.0, 0.08, 0.05, 1.0)
-AXES = ((0, 1), (1, 2), (2, 0))  # planes of the three circles that stand for a sphere
+AXES = ((0, 1), (1, 2), (2, 0))  # planes of the three circles that represent a sphere
 
 
 @dataclass
 class Lines:
-    """Segments: both ends of each after the other."""
+    """Line segments: the two ends of each segment follow each other."""
     ends: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.float32))  # (2 n, 3), metres
     colours: np.ndarray = field(default_factory=lambda: np.zeros((0, 4), np.float32))  # (2 n, 4)
 
 
 def colour_of(name):
-    """A cluster's, by its centre's name, so that it stays while others come and go. Red is kept for what is over budget."""
-    number = zlib.crc32(name.encode()) * 2654435761 % 2**32  # Knuth's: names that differ in a digit get other colours
+    """The colour of a cluster. It depends only on the name of its centre, so it stays when other clusters change. Red is for lights
+    over budget."""
+    number = zlib.crc32(name.encode()) * 2654435761 % 2**32  # Knuth's hash: names that differ in a digit get other colours
     hue = 0.08 + 0.84 * (number >> 16) / 65536
     return (*colorsys.hsv_to_rgb(hue, 0.55 + 0.3 * (number >> 15 & 1), 0.8 + 0.2 * (number >> 14 & 1)), 1.0)
 
 
 def light_colours(center, over_budget, names, flags):
-    """(n, 4): the cluster's colour, red where the budget takes a light's own map, pale yellow where a light casts no shadow
-    (`flags`: the table's), grey where it is out of view."""
+    """(n, 4): the cluster's colour; red if the budget takes a light's own map, pale yellow if a light casts no shadow (`flags`: of the
+    table), grey if it is out of view."""
     colours = np.empty((len(center), 4), np.float32)
     colours[:] = OUT_OF_VIEW
     colours[(flags & NO_SHADOW) != 0] = WITHOUT_SHADOW
@@ -47,14 +48,14 @@ def light_colours(center, over_budget, names, flags):
 
 
 def links(position, center, colours):
-    """From each light that takes another's map to that light."""
+    """Lines from each light that uses another light's map to that light."""
     member = np.flatnonzero((center >= 0) & (center != np.arange(len(center))))
     ends = np.stack([position[member], position[center[member]]], axis=1).reshape(-1, 3)
     return Lines(np.ascontiguousarray(ends, np.float32), np.repeat(colours[member], 2, axis=0))
 
 
 def seen_at(places, perspective, width, height):
-    """(row, x, y) of each place that falls into a region of so many pixels. `perspective`: rows of the view's matrix."""
+    """(row, x, y) of each position that is visible in a region of `width` × `height` pixels. `perspective`: rows of the view's matrix."""
     clip = np.column_stack((places, np.ones(len(places)))) @ np.asarray(perspective, float).T
     with np.errstate(divide="ignore", invalid="ignore"):
         x, y = ((clip[:, axis] / clip[:, 3] + 1) / 2 * size for axis, size in ((0, width), (1, height)))
@@ -63,12 +64,12 @@ def seen_at(places, perspective, width, height):
 
 
 def circle_segments(count):
-    """Of each circle of so many spheres: beyond some all together take about the same."""
+    """The segments of each circle of `count` spheres. From MOST_FINE_SPHERES on, the total stays about the same."""
     return max(LEAST_SEGMENTS, min(CIRCLE_SEGMENTS, CIRCLE_SEGMENTS * MOST_FINE_SPHERES // max(count, 1)))
 
 
 def spheres(centers, radii, colours):
-    """Three circles of each."""
+    """Three circles for each sphere."""
     segments = circle_segments(len(centers))
     angle = np.linspace(0, 2 * np.pi, segments + 1)
     circles = np.zeros((3, segments + 1, 3), np.float32)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What will come out of a bake differently than it looks in Blender, by name."""
+"""Finds what will look different after a bake than in Blender."""
 
 from dataclasses import dataclass
 from typing import Callable
 
 from . import photometry
 
-UNTOUCHED_POWERS_W = (10, 1000)  # of a new lamp in Blender, and of the one in its first scene
+UNTOUCHED_POWERS_W = (10, 1000)  # of a new light in Blender, and of the light in its default scene
 
 
 @dataclass(frozen=True)
@@ -20,17 +20,17 @@ class Light:
     users: int = 1  # objects that share its data
     scale: tuple = (1, 1, 1)  # in the world
     sheared: bool = False
-    own_nodes: bool = False  # its surface is more than an emission
-    inside: str = ""  # the meshes that it is in and that cast shadows
-    hidden: bool = False  # in the viewport, but not from renders
-    lost_motion: str = ""  # how it changes with time, where that is not exported
+    own_nodes: bool = False  # its shader nodes are more than an emission
+    inside: str = ""  # the shadow-casting meshes that contain it
+    hidden: bool = False  # hidden in the viewport, but not in renders
+    lost_motion: str = ""  # the animation that is not exported
     dynamic: bool = False
 
 
 @dataclass(frozen=True)
 class Scene:
     name: str
-    metres_per_unit: float = 1  # what Blender's unit scale says a length of 1 is
+    metres_per_unit: float = 1  # Blender's unit scale
 
 
 @dataclass(frozen=True)
@@ -99,6 +99,6 @@ RULE_OF_ID = {rule.id: rule for rule in RULES}
 
 
 def surprises(lights, scenes=()):
-    """In the order of the rules, then of the scenes and lights."""
+    """Sorted by rules, then by scenes and lights."""
     return [Surprise(rule, thing.name, rule.text(thing)) for rules, things in ((SCENE_RULES, scenes), (LIGHT_RULES, lights))
             for rule in rules for thing in things if rule.applies(thing)]

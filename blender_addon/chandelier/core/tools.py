@@ -11,19 +11,19 @@ import sys
 import tempfile
 from dataclasses import dataclass
 
-# As chandelier-bake --verbose names them, in its order, and how long each takes of a bake of some ten images (baker/README.md).
-# What is in the cache is not baked again: some are left out then.
+# The passes that chandelier-bake --verbose names, in order, and how long each takes in a bake of some ten images (baker/README.md).
+# Passes whose results are in the cache are left out.
 PASSES = {
     "import": 6, "recentre": 1, "glass": 1, "materials": 1, "animation": 1, "find_geometry": 0, "normals": 1, "tangents": 2, "quantize": 5,
     "weld": 2, "clean": 3, "shells": 4, "batches": 12, "instances": 1, "batch_bvh": 1, "instance_bvh": 1, "triangle_bvh": 10, "voxels": 5,
     "keep_geometry": 1, "images": 20, "lights": 1, "light_bvh": 1, "light_audit": 2, "write": 13, "check": 4, "sync": 3}
 PASS_LINE = re.compile(r"^chandelier-bake: +[\d.]+ s: +[\d.]+ s for (?:.+, )?(\w+)$")  # the last of passes that share a line
 TOLD_LINE = re.compile(r"^chandelier-\w+: (error|warning): (.*)$")
-PATIENCE_S = 3  # of a program that was told to end
+PATIENCE_S = 3  # how long a program may take to end
 
 
 class ToolError(Exception):
-    """One line that a user can read."""
+    """Its text is one line for the user."""
 
 
 def program_name(tool):
@@ -31,7 +31,8 @@ def program_name(tool):
 
 
 def make_executable(folder):
-    """Blender unpacks a zip without its files' permissions, so sets them. A file whose permissions cannot be changed is not found."""
+    """Makes the programs in `folder` executable, since Blender unpacks a zip without permissions. If that fails, the
+    program is not found later."""
     for path in pathlib.Path(folder).glob("chandelier-*"):
         if path.is_file() and not os.access(path, os.X_OK):
             with contextlib.suppress(OSError):
@@ -39,7 +40,7 @@ def make_executable(folder):
 
 
 def find(tool, folders):
-    """A program in one of the folders, else in PATH."""
+    """The path of a program in one of the folders, else in PATH."""
     name = program_name(tool)
     for folder in folders:
         path = pathlib.Path(folder) / name
@@ -58,7 +59,7 @@ def bake_command(program, scene, pack, cache=None):
 
 @dataclass(frozen=True)
 class Shown:
-    """The arguments of chandelier-play, by its own names."""
+    """Options of chandelier-play; the fields have the options' names."""
     d_init: float = 0.5
     distance_scaling: str = "grow"
     z_far: float = 30
@@ -88,7 +89,7 @@ class Job:
         self.command, self.name = command, pathlib.Path(command[0]).stem
         self.partial = b""
         self.doing, self.warnings, self.last, self.error = "", [], "", ""
-        self.passed = 0  # of PASSES, with those that were left out
+        self.passed = 0  # number of PASSES that are done or were left out
         self.cancelled = False
         writing, self.said_path = tempfile.mkstemp(prefix="chandelier-")
         self.said = open(self.said_path, "rb")
@@ -105,7 +106,7 @@ class Job:
         os.unlink(self.said_path)
 
     def is_running(self):
-        """Reads the new output. False once the program has ended; then `error` says why it failed, if it did."""
+        """Reads the new output. Returns False once the program has ended; `error` then says why it failed, if it did."""
         if self.said.closed:
             return False
         ended = self.process.poll() is not None
