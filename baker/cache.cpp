@@ -41,7 +41,7 @@ std::string notes_fault(const pack::File& file, const std::string& name, std::st
   const std::string_view source = file.text(file.view().bake_info->source);
   const size_t end = source.find('\n');
   if (source.substr(0, end) != name)
-    return "is another entry (" + shortened(std::string(source.substr(0, end)), 60) + ")";
+    return "belongs to another entry (" + shortened(std::string(source.substr(0, end)), 60) + ")";
   if (end == std::string_view::npos) return "has no notes";
   notes = source.substr(end + 1);
   return {};
@@ -115,7 +115,7 @@ std::unique_ptr<CacheEntry> Cache::load(const std::string& name) {
 void Cache::reject(const std::string& name, const std::string& fault) {
   const std::lock_guard lock(mutex_);
   loads_[name] = false;
-  faults_[name] = "cannot be used and is made anew: " + fault;
+  faults_[name] = "cannot be used and is replaced: " + fault;
 }
 
 void Cache::store(const std::string& name, const pack::View& sections, const std::string& notes) {
@@ -135,7 +135,7 @@ void Cache::store(const std::string& name, const pack::View& sections, const std
     pack::write(path_of(name), view, pack::Sync::no, pack::Compression::off, most_threads());
   } catch (const pack::Error& error) {
     const std::lock_guard lock(mutex_);
-    faults_[name] = std::string("cannot be kept: ") + error.what();
+    faults_[name] = std::string("cannot be stored: ") + error.what();
   }
 }
 

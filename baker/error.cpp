@@ -98,8 +98,8 @@ uint64_t Warnings::count() const {
 std::vector<std::string> Warnings::lines() const {
   std::vector<std::string> out;
   for (const Entry& entry : entries_) {
-    const uint64_t told = entry.names.empty() ? 1 : std::min(entry.count, most_names);
-    const std::string more = entry.count > told ? fmt::format("and {} more", entry.count - told) : "";
+    const uint64_t shown = entry.names.empty() ? 1 : std::min(entry.count, most_names);
+    const std::string more = entry.count > shown ? fmt::format("and {} more", entry.count - shown) : "";
     if (entry.names.empty()) {
       out.push_back(
           fmt::format("{}: {}{}: {}", entry.file, entry.where, more.empty() ? "" : " (" + more + ")", entry.what));

@@ -126,7 +126,7 @@ void check_outputs(const baker::Options& options) {
     const std::filesystem::path canonical = std::filesystem::weakly_canonical(output, error);
     if (error) baker::fail(output.string(), "cannot be an output: " + error.message());
     if (!seen.insert(canonical).second) {
-      baker::fail(output.string(), "is named as two outputs");
+      baker::fail(output.string(), "is used for two outputs");
     }
   }
 }
@@ -199,7 +199,7 @@ void write_pack(const baker::Options& options, const pack::Contents& pack, std::
 
 /// Prints everything before the pack gets its name, so that a bake that cannot print leaves the older pack. A report's
 /// file waits in `file`: it must not describe a pack that was not put in place.
-void tell(const baker::Options& options, const Outcome& outcome, std::optional<pack::TemporaryFile>& file) {
+void print_results(const baker::Options& options, const Outcome& outcome, std::optional<pack::TemporaryFile>& file) {
   for (const std::string& line : outcome.warnings) fmt::print(stderr, "chandelier-bake: warning: {}\n", line);
   if (options.json == "-") return print(baker::report_json(options, outcome));
   if (!options.json.empty()) {
@@ -237,7 +237,7 @@ void run(const baker::Options& options) {
   outcome.seconds = progress.seconds();
   progress.clear();
   std::optional<pack::TemporaryFile> report;
-  tell(options, outcome, report);
+  print_results(options, outcome, report);
   writer->commit();
   if (report) report->commit(pack::Sync::yes);
 }

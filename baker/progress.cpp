@@ -21,7 +21,7 @@ Progress::Progress(Shown shown, double patience_s, std::FILE* out) : shown_(show
   ticker_ = std::jthread([this](const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stopped_.wait_for(lock, stop, std::chrono::milliseconds(200), [&] { return stop.stop_requested(); })) {
-      if (shown_ == Shown::all_passes && seconds() > pass_began_s_ + long_s) tell_quick_passes();
+      if (shown_ == Shown::all_passes && seconds() > pass_began_s_ + long_s) print_quick_passes();
       if (shown_ == Shown::rewritten && seconds() > patience_s_ && !what_.empty()) rewrite();
     }
   });
@@ -32,7 +32,7 @@ Progress::~Progress() {
   ticker_.request_stop();
   ticker_.join();
   const std::lock_guard lock(mutex_);
-  tell_quick_passes();
+  print_quick_passes();
   erase();
 }
 
@@ -44,7 +44,7 @@ void Progress::begin(const std::string& pass) const {
 
 void Progress::end(const std::string& pass, double ms) const {
   const std::lock_guard lock(mutex_);
-  if (shown_ == Shown::slow_passes && ms > 1000 * patience_s_) tell(seconds(), pass, ms);
+  if (shown_ == Shown::slow_passes && ms > 1000 * patience_s_) print_line(seconds(), pass, ms);
   if (shown_ != Shown::all_passes) return;
   ++passes_ended_;
   if (ms < quick_ms) {
@@ -53,18 +53,18 @@ void Progress::end(const std::string& pass, double ms) const {
     quick_ended_s_ = seconds();
     return;
   }
-  tell_quick_passes();
-  tell(seconds(), pass, ms);
+  print_quick_passes();
+  print_line(seconds(), pass, ms);
 }
 
-void Progress::tell(double ended_s, const std::string& passes, double ms) const {
+void Progress::print_line(double ended_s, const std::string& passes, double ms) const {
   fmt::print(out_, "chandelier-bake: {:7.2f} s: {:6.2f} s for {}\n", ended_s, ms / 1000, passes);
   std::fflush(out_);
 }
 
-void Progress::tell_quick_passes() const {
+void Progress::print_quick_passes() const {
   if (quick_passes_.empty()) return;
-  tell(quick_ended_s_, quick_passes_, quick_ms_);
+  print_line(quick_ended_s_, quick_passes_, quick_ms_);
   quick_passes_.clear();
   quick_ms_ = 0;
 }
@@ -83,7 +83,7 @@ void Progress::advance(size_t done, size_t total) const {
 
 void Progress::clear() const {
   const std::lock_guard lock(mutex_);
-  tell_quick_passes();
+  print_quick_passes();
   if (passes_ended_ > 0) fmt::print(out_, "chandelier-bake: {:7.2f} s for all {} passes\n", seconds(), passes_ended_);
   passes_ended_ = 0;
   erase();

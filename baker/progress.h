@@ -47,8 +47,8 @@ class Progress {
   // With mutex_ held.
   void rewrite() const;
   void erase() const;
-  void tell(double ended_s, const std::string& passes, double ms) const;
-  void tell_quick_passes() const;
+  void print_line(double ended_s, const std::string& passes, double ms) const;
+  void print_quick_passes() const;
 
   Shown shown_;
   double patience_s_;

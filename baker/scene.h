@@ -79,7 +79,7 @@ struct EncodedImage {
   std::vector<uint8_t> bytes;
   std::string file = {};  // the first part of `where`
   std::optional<SpecularGlossiness> converted_from = {};
-  bool damage_told = false;  // a warning has named the damage; one is enough
+  bool damage_reported = false;  // a warning has named the damage; one is enough
 };
 
 struct Texture {

@@ -87,7 +87,7 @@ DecodedImage decode_webp(const EncodedImage& image) {
   if (decoded.channels != 4 || !decoded.fault.empty()) return decoded;
   const DecodedImage opaque = decode_file(webp_without_alpha(image.bytes), ImageFormat::webp, image.where);
   if (!opaque.fault.empty() || opaque.channels != 3 || opaque.values.size() / 3 != decoded.values.size() / 4) {
-    decoded.fault = "its alpha cannot be told from its colours";
+    decoded.fault = "its alpha channel cannot be separated from its colours";
     return decoded;
   }
   for (size_t i = 0; i < opaque.values.size() / 3; ++i) {

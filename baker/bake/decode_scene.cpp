@@ -63,18 +63,18 @@ SceneTexels decode_image(const Scene& scene, uint32_t image) {
   return out;
 }
 
-void tell_damage(Scene& scene, uint32_t image, const std::vector<std::string>& damage, bool strict,
-                 Warnings& warnings) {
+void report_damage(Scene& scene, uint32_t image, const std::vector<std::string>& damage, bool strict,
+                   Warnings& warnings) {
   size_t number = 0;
   for_each_source(scene, image, [&](uint32_t source) {
     const std::string& what = damage.at(number++);
     EncodedImage& encoded = scene.images[source];
-    if (what.empty() || encoded.damage_told) return;
-    if (strict) fail(encoded.where, what + ", and --strict was asked for");
-    encoded.damage_told = true;
+    if (what.empty() || encoded.damage_reported) return;
+    if (strict) fail(encoded.where, what + ", which --strict refuses");
+    encoded.damage_reported = true;
     const bool split = !encoded.file.empty() && encoded.where.size() > encoded.file.size() + 2;
     warnings.add(split ? encoded.file : "scene", "images",
-                 what + ": what could be decoded is baked; --strict refuses it",
+                 what + ": the part that can be decoded is baked; --strict refuses such images",
                  split ? encoded.where.substr(encoded.file.size() + 2) : encoded.where);
   });
 }

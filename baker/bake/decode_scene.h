@@ -43,6 +43,7 @@ struct SceneTexels {
 SceneTexels decode_image(const Scene& scene, uint32_t image);
 
 /// Warns of each damaged source of an image, once; `strict` throws Error instead.
-void tell_damage(Scene& scene, uint32_t image, const std::vector<std::string>& damage, bool strict, Warnings& warnings);
+void report_damage(Scene& scene, uint32_t image, const std::vector<std::string>& damage, bool strict,
+                   Warnings& warnings);
 
 }  // namespace chandelier::baker

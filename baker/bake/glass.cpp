@@ -160,7 +160,7 @@ std::array<uint64_t, 2> split(Scene& scene, uint32_t material, uint32_t glass, b
   const Transmission transmission(scene, scene.materials[material], planes);
   if (const uint32_t texture = scene.materials[material].transmission_map.texture; texture != no_index) {
     const Texture& map = scene.textures[texture];
-    tell_damage(scene, map.image, transmission.damage(), strict, warnings);
+    report_damage(scene, map.image, transmission.damage(), strict, warnings);
   }
   std::array<uint64_t, 2> counts{};
   for (Mesh& mesh : scene.meshes) {

@@ -193,7 +193,7 @@ std::vector<MadeImages> run(const std::vector<Job>& jobs, const std::vector<Imag
                       [&](size_t i) { made[i] = find_or_make_images(jobs[i], scene, requests, settings, cache); });
     for (; first < end; ++first) {
       if (!made[first].error.empty()) throw Error(made[first].error);
-      tell_damage(scene, jobs[first].image, made[first].damage, settings.strict, warnings);
+      report_damage(scene, jobs[first].image, made[first].damage, settings.strict, warnings);
       for_each_source(scene, jobs[first].image, [&](uint32_t source) {
         if (--users[source] == 0) scene.images[source].bytes = {};
       });
@@ -215,7 +215,7 @@ uint32_t add_image(StoredTexels&& image, const std::string& name, Strings& strin
   return fit_u32(pack.images.size() - 1, "images");
 }
 
-void tell(const std::vector<MadeImages>& made, size_t requests, PassReport& report) {
+void count_images(const std::vector<MadeImages>& made, size_t requests, PassReport& report) {
   uint64_t images = 0, texels = 0, squared_error = 0, values = 0, damaged = 0;
   for (const MadeImages& each : made) {
     images += each.images.size();
@@ -243,7 +243,7 @@ void make_images(Scene& scene, const std::vector<ImageRequest>& requests, const 
                  pack::Contents& pack) {
   const std::vector<Job> jobs = jobs_of(requests, scene);
   std::vector<MadeImages> made = run(jobs, requests, scene, settings, progress, cache, warnings);
-  tell(made, requests.size(), report);
+  count_images(made, requests.size(), report);
   size_t bytes = 0;
   for (const MadeImages& each : made) {
     for (const StoredTexels& image : each.images) bytes += (image.bytes.size() + 15) / 16 * 16;

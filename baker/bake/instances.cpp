@@ -67,7 +67,8 @@ void check_finite(const pack::BatchInstance& record, const std::string& where) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const float value : {record.bounds_min_ws[axis], record.bounds_max_ws[axis]}) {
       if (!std::isfinite(value)) {
-        fail(where, std::string("reaches beyond a float in the world (") + "xyz"[axis] + " " + to_text(value) + ")");
+        fail(where, std::string("has a coordinate in the world that is too large for a float (") + "xyz"[axis] + " " +
+                        to_text(value) + ")");
       }
     }
   }

@@ -202,7 +202,7 @@ void audit_units(Audit& audit, const Numbers& placed) {
   Numbers blinding = brighter_than_sunlight(audit, placed);
   std::erase_if(blinding, [&](size_t i) { return std::ranges::find(apart, i) != apart.end(); });
   audit.name("brighter_than_sunlight",
-             "brighter than direct sunlight on most of what is around them: were watts turned to lumens twice?",
+             "brighter than direct sunlight on most surfaces around them: were watts turned to lumens twice?",
              blinding);
 }
 
@@ -282,8 +282,9 @@ void audit_groups(Audit& audit) {
     const bool both = holds[light.group][0] && holds[light.group][1];
     if (light.group != 0 && both && light.type == pack::LightType::directional) mixed.push_back(i);
   }
-  audit.name("grouped_and_unclustered", "in a group and cluster false: they share the group's shadow map", opted_out);
-  audit.name("grouped_and_shadowless", "in a group and shadow false: they take no shadow map", shadowless);
+  audit.name("grouped_and_unclustered", "in a group although cluster is false: they share the group's shadow map",
+             opted_out);
+  audit.name("grouped_and_shadowless", "in a group although shadow is false: they get no shadow map", shadowless);
   audit.name("mixed_groups", "directional in a group with lights of another type: they share no map with those", mixed);
 }
 

@@ -74,7 +74,7 @@ bool meets_box(const Ray& ray, const glm::vec3& low, const glm::vec3& high) {
 }
 
 /// Moeller and Trumbore 1997. The distance, or infinity; `leaves`: the ray goes from back to front.
-double meet_triangle(const Ray& ray, const Triangle& triangle, bool& leaves) {
+double intersect_triangle(const Ray& ray, const Triangle& triangle, bool& leaves) {
   const glm::dvec3 ab = triangle[1] - triangle[0], ac = triangle[2] - triangle[0], a = ray.from - triangle[0];
   const glm::dvec3 across = glm::cross(ray.way, ac);
   const double volume = glm::dot(ab, across);
@@ -112,7 +112,7 @@ double cosine_to_segment(const glm::dvec3& a, const glm::dvec3& b, const glm::dv
 
 double cosine_to_triangle(const Triangle& t, const glm::dvec3& axis) {
   bool leaves = false;
-  if (std::isfinite(meet_triangle({glm::dvec3(0), axis}, t, leaves))) return 1;
+  if (std::isfinite(intersect_triangle({glm::dvec3(0), axis}, t, leaves))) return 1;
   return std::max(
       {cosine_to_segment(t[0], t[1], axis), cosine_to_segment(t[1], t[2], axis), cosine_to_segment(t[2], t[0], axis)});
 }
@@ -129,7 +129,7 @@ void cast_at_batch(const pack::Contents& pack, const pack::BatchInstance& draw, 
   const bool mirrored = glm::determinant(glm::dmat3(world)) < 0;
   for (uint32_t i = 0; i < batch.index_count; i += 3) {
     bool leaves_ls = false;
-    const double distance = meet_triangle(ray_ls, triangle_ls(pack, batch.first_index + i), leaves_ls);
+    const double distance = intersect_triangle(ray_ls, triangle_ls(pack, batch.first_index + i), leaves_ls);
     if (!std::isfinite(distance)) continue;
     const bool leaves = leaves_ls != mirrored;
     if (batch.closed) hit.shells_around += leaves ? 1 : -1;

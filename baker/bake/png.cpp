@@ -92,7 +92,8 @@ bool allows(uint8_t color, uint8_t depth) {
 }
 
 Header read_header(const Chunk& chunk, const std::string& where) {
-  if (chunk.type != "IHDR" || chunk.size != 13) damaged(where, "it does not begin with IHDR, 13 bytes", chunk.size);
+  if (chunk.type != "IHDR" || chunk.size != 13)
+    damaged(where, "its first chunk is not an IHDR of 13 bytes, size", chunk.size);
   const uint8_t* d = chunk.data;
   const Header header{u32_at(d), u32_at(d + 4), d[8], d[9], d[12]};
   check_image_size(header.width, header.height, where);
@@ -142,7 +143,8 @@ class Inflater {
   std::string finish() {
     Bytes more(1);
     if (!inflate_to(more)) return fault("its data cannot be inflated after byte", stream_.total_in);
-    return stream_.avail_out > 0 && !ended_ ? fault("its data ends without a checksum, bytes", stream_.total_in) : "";
+    return stream_.avail_out > 0 && !ended_ ? fault("its data ends without a checksum after byte", stream_.total_in)
+                                            : "";
   }
 
  private:
@@ -289,7 +291,7 @@ std::vector<uint8_t> essential_png(const std::vector<uint8_t>& bytes, const std:
     append(chunk, out);
   }
   if (header.color == palette_type && palette_colors == 0)
-    damaged(where, "no palette before its data, colour type", palette_type);
+    damaged(where, "it has no palette before its data, which it needs for colour type", palette_type);
   append_data(header, data, bytes.size(), where, damage, out);
   append("IEND", nullptr, 0, out);
   return out;

@@ -186,7 +186,7 @@ void fill_clipped(const SortedPieces& sorted, const std::vector<VoxelBlock>& blo
   });
 }
 
-void tell(const pack::Contents& pack, const std::vector<VoxelBlock>& blocks, PassReport& pass) {
+void count_voxels(const pack::Contents& pack, const std::vector<VoxelBlock>& blocks, PassReport& pass) {
   uint64_t occupied = 0, no_cull = 0;
   for (const pack::VoxelCell& cell : pack.voxel_cells) occupied += cell.run_count != 0;
   const pack::VoxelGrid& grid = pack.voxel_grid[0];
@@ -227,7 +227,7 @@ void make_voxels(const VoxelSettings& settings, const Progress& progress, pack::
   } else {
     fill_separate(sorted, blocks, pack);
   }
-  tell(pack, blocks, pass);
+  count_voxels(pack, blocks, pass);
 }
 
 }  // namespace chandelier::baker

@@ -18,7 +18,7 @@ std::vector<float> read_times(const Gltf& gltf, int accessor, const std::string&
   }
   std::vector<float> times = read_floats(gltf, accessor, 1, 1, where).values;
   if (times.empty()) fail(where, "has no keys");
-  if (times[0] < 0) fail(where, "a key is before the start (" + to_text(times[0]) + " s)");
+  if (times[0] < 0) fail(where, "a key has a negative time (" + to_text(times[0]) + " s)");
   for (size_t i = 1; i < times.size(); ++i) {
     if (times[i] > times[i - 1]) continue;
     fail(where, "times do not ascend (" + to_text(times[i]) + " s at key " + std::to_string(i) + ")");
@@ -65,18 +65,18 @@ AnimationChannel read_channel(const Gltf& gltf, const Json& sampler, AnimationPa
   if (cubic && out.times_s.size() < 2) fail(where + ", input", "a cubic spline has fewer than two keys (1)");
   const auto output = sampler["output"].get<int>();
   if (!may_hold(path, gltf.model.accessors[static_cast<size_t>(output)])) {
-    fail(where + ", output", "component type does not suit its path");
+    fail(where + ", output", "component type is not allowed for this path");
   }
   const size_t components = path == AnimationPath::rotation ? 4 : 3;
   Floats values = read_floats(gltf, output, components, components, where + ", output");
   const size_t expected = out.times_s.size() * (cubic ? 3 : 1);
   if (values.count != expected) {
-    fail(where + ", output", "has another count than its keys ask for, " + std::to_string(expected) + " (" +
+    fail(where + ", output", "has a different number of values than its keys need, " + std::to_string(expected) + " (" +
                                  std::to_string(values.count) + ")");
   }
   out.values = std::move(values.values);
   if (path == AnimationPath::rotation && normalize_rotations(out, where + ", output")) {
-    warnings.add(gltf.file, here, "rotations that are not of unit length are made so");
+    warnings.add(gltf.file, here, "rotations that are not of unit length are normalized");
   }
   return out;
 }
@@ -113,11 +113,12 @@ Animation read_animation(const Gltf& gltf, const Json& json, const std::string& 
     const std::string name = target["path"].get<std::string>();
     const auto path = path_of(name);
     if (name == "pointer") {
-      warnings.add(gltf.file, here, "animation by KHR_animation_pointer is skipped: what it changes stays as it is",
+      warnings.add(gltf.file, here,
+                   "animation by KHR_animation_pointer is skipped: the properties that it changes stay as they are",
                    pointer_of(target));
       continue;
     }
-    if (!path) warnings.add(gltf.file, here, "animation of something else than a node's place is skipped", name);
+    if (!path) warnings.add(gltf.file, here, "animation of something other than a node's transform is skipped", name);
     if (!target.contains("node")) warnings.add(gltf.file, here, "a channel without a node is skipped");
     if (!path || !target.contains("node")) continue;
     const auto node = target["node"].get<uint32_t>();

@@ -30,7 +30,7 @@ draco::DecoderBuffer buffer_of(std::span<const uint8_t> bytes) {
 Counts claimed_counts(std::span<const uint8_t> bytes, const std::string& where) {
   draco::DecoderBuffer buffer = buffer_of(bytes);
   draco::DracoHeader header;
-  if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) fail(where, "is no Draco stream");
+  if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) fail(where, "is not a Draco stream");
   if (header.version_major != 2 || header.version_minor != 2) {
     fail(where, "Draco bitstream is not 2.2 (" + std::to_string(header.version_major) + "." +
                     std::to_string(header.version_minor) + ")");

@@ -77,8 +77,9 @@ bool is_shadowless(const Gltf& gltf, size_t number, Warnings& warnings) {
   if (!node.contains("mesh")) {
     const Json* json = find_extras(node);
     if (json && json->is_object() && json->contains("shadow") && !has_light) {
-      warnings.add(gltf.file, here,
-                   "extras.chandelier.shadow of a node without mesh and light is ignored: it says nothing of children");
+      warnings.add(
+          gltf.file, here,
+          "extras.chandelier.shadow of a node without mesh and light is ignored: it does not apply to children");
     }
     return false;
   }

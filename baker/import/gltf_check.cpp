@@ -244,7 +244,7 @@ void check_tree(const Json& json, const std::string& file) {
     size_t at = i;
     for (; at != count && !clear[at]; at = parent[at]) {
       way.push_back(at);
-      if (way.size() > count) fail(file + ": " + place(json, "nodes", i), "is below itself (a cycle of nodes)");
+      if (way.size() > count) fail(file + ": " + place(json, "nodes", i), "is its own ancestor (a cycle of nodes)");
     }
     for (size_t each : way) clear[each] = 1;
   }

@@ -117,13 +117,13 @@ std::string_view nearest(std::string_view key, const Shape& shape) {
 
 struct KeyLint {
   const Lint& lint;
-  uint64_t told = 0;
+  uint64_t unknown_keys = 0;
 
   /// `place`: of the object, or of the one that it is in; empty for the glTF's own.
   void unknown(const std::string& place, std::string_view key, const Shape& shape) {
-    constexpr uint64_t most_told = 3;  // a warning shows this many names
+    constexpr uint64_t most_corrected = 3;  // keys for which a correction is suggested
     std::string name = (place.empty() ? "" : place + ": ") + shortened(std::string(key), 40);
-    const std::string_view meant = told++ < most_told ? nearest(key, shape) : std::string_view();
+    const std::string_view meant = unknown_keys++ < most_corrected ? nearest(key, shape) : std::string_view();
     if (!meant.empty()) name += ", is it " + std::string(meant) + "?";
     lint.warnings.add(lint.file, "glTF", "unknown key is ignored", key.empty() ? "an empty name" : name);
   }

@@ -33,20 +33,23 @@ double number_or(const Json& object, const char* key, double otherwise) {
 
 void lint_buffers(const Lint& lint) {
   for_each(lint, "buffers", [&](const Json& buffer, size_t i) {
-    if (whole(buffer, "byteLength", 1) == 0) lint.say("buffers", i, "it is empty");
+    if (whole(buffer, "byteLength", 1) == 0) lint.warn("buffers", i, "it is empty");
     const std::string uri = text_or(buffer, "uri", "");
     const bool known =
         uri.rfind("data:application/octet-stream", 0) == 0 || uri.rfind("data:application/gltf-buffer", 0) == 0;
-    if (uri.rfind("data:", 0) == 0 && !known) lint.say("buffers", i, "its data URI is not of a buffer's media type");
+    if (uri.rfind("data:", 0) == 0 && !known)
+      lint.warn("buffers", i, "the media type of its data URI is not that of a buffer");
   });
   for_each(lint, "bufferViews", [&](const Json& view, size_t i) {
     const uint64_t length = whole(view, "byteLength", 0), offset = whole(view, "byteOffset", 0);
     const uint64_t all = whole(lint.entry("buffers", whole(view, "buffer", 0)), "byteLength", 0);
-    if (length == 0) lint.say("bufferViews", i, "it is empty");
-    if (offset + length > all) lint.say("bufferViews", i, "it ends past its buffer");
+    if (length == 0) lint.warn("bufferViews", i, "it is empty");
+    if (offset + length > all) lint.warn("bufferViews", i, "it ends past its buffer");
     if (!view.contains("byteStride")) return;
-    if (whole(view, "byteStride", 0) > length) lint.say("bufferViews", i, "its byteStride is more than its bytes");
-    if (whole(view, "target", 34962) != 34962) lint.say("bufferViews", i, "it has a byteStride without vertices");
+    if (whole(view, "byteStride", 0) > length)
+      lint.warn("bufferViews", i, "its byteStride is larger than its byteLength");
+    if (whole(view, "target", 34962) != 34962)
+      lint.warn("bufferViews", i, "it has a byteStride, but its target is not vertices");
   });
 }
 
@@ -55,51 +58,53 @@ void lint_accessors(const Lint& lint) {
     const uint64_t type = whole(accessor, "componentType", 0), element = element_bytes(accessor);
     const uint64_t component = type >= 5125 ? 4 : type >= 5122 ? 2 : 1;
     const uint64_t count = whole(accessor, "count", 0), offset = whole(accessor, "byteOffset", 0);
-    if (element == 0) lint.say("accessors", i, "its type is unknown");
+    if (element == 0) lint.warn("accessors", i, "its type is unknown");
     if (type >= 5125 && accessor.value("normalized", false))
-      lint.say("accessors", i, "it is normalized but not of small integers");
+      lint.warn("accessors", i, "it is normalized, but not of 8- or 16-bit integers");
     if (accessor.contains("byteOffset") && !accessor.contains("bufferView"))
-      lint.say("accessors", i, "it has a byteOffset without a buffer view");
+      lint.warn("accessors", i, "it has a byteOffset without a buffer view");
     if (accessor.contains("sparse") && whole(accessor["sparse"], "count", 0) > count)
-      lint.say("accessors", i, "it has more sparse elements than elements");
+      lint.warn("accessors", i, "it has more sparse elements than elements");
     for (const char* part : {"indices", "values"}) {
       if (accessor.contains("sparse") && lint.view_of(accessor["sparse"][part]).contains("byteStride"))
-        lint.say("accessors", i, "its sparse elements have a byteStride");
+        lint.warn("accessors", i, "its sparse elements have a byteStride");
     }
     if (!accessor.contains("bufferView") || count == 0) return;
     const Json& view = lint.view_of(accessor);
     const uint64_t stride = whole(view, "byteStride", element), bytes = whole(view, "byteLength", 0);
     if (offset % component != 0 || (offset + whole(view, "byteOffset", 0)) % component != 0)
-      lint.say("accessors", i, "its values are not aligned");
-    if (stride < element) lint.say("accessors", i, "its elements overlap");
+      lint.warn("accessors", i, "its values are not aligned");
+    if (stride < element) lint.warn("accessors", i, "its elements overlap");
     const bool fits =
         offset + element <= bytes && (count - 1) <= (bytes - offset - element) / std::max(stride, uint64_t{1});
-    if (!fits) lint.say("accessors", i, "it ends past its buffer view");
+    if (!fits) lint.warn("accessors", i, "it ends past its buffer view");
   });
 }
 
 void lint_cameras(const Lint& lint) {
   for_each(lint, "cameras", [&](const Json& camera, size_t i) {
-    if (camera.contains("perspective") && camera.contains("orthographic")) lint.say("cameras", i, "it is of two types");
+    if (camera.contains("perspective") && camera.contains("orthographic"))
+      lint.warn("cameras", i, "it is both perspective and orthographic");
     const Json& lens = camera[text_or(camera, "type", "perspective")];
     if (number_or(lens, "zfar", HUGE_VAL) <= number_or(lens, "znear", 0))
-      lint.say("cameras", i, "it ends before it begins");
-    if (number_or(lens, "xmag", 1) == 0 || number_or(lens, "ymag", 1) == 0) lint.say("cameras", i, "it has no width");
+      lint.warn("cameras", i, "its zfar is not above its znear");
+    if (number_or(lens, "xmag", 1) == 0 || number_or(lens, "ymag", 1) == 0)
+      lint.warn("cameras", i, "its xmag or ymag is 0");
   });
 }
 
 void lint_images(const Lint& lint) {
   for_each(lint, "images", [&](const Json& image, size_t i) {
     const bool by_view = image.contains("bufferView");
-    if (by_view == image.contains("uri")) lint.say("images", i, "it has not one source");
-    if (by_view && !image.contains("mimeType")) lint.say("images", i, "it has no mimeType");
+    if (by_view == image.contains("uri")) lint.warn("images", i, "it does not have exactly one of uri and bufferView");
+    if (by_view && !image.contains("mimeType")) lint.warn("images", i, "it has no mimeType");
     if (by_view && lint.entry("bufferViews", whole(image, "bufferView", 0)).contains("byteStride")) {
-      lint.say("images", i, "its buffer view has a byteStride");
+      lint.warn("images", i, "its buffer view has a byteStride");
     }
     const std::string uri = text_or(image, "uri", "");
     const size_t colon = uri.find_first_of(":/?#");
     if (colon != std::string::npos && uri[colon] == ':' && uri.rfind("data:image/", 0) != 0) {
-      lint.say("images", i, "its URI is neither relative nor image data");
+      lint.warn("images", i, "its URI is neither relative nor image data");
     }
   });
 }
@@ -107,15 +112,16 @@ void lint_images(const Lint& lint) {
 void lint_nodes(const Lint& lint) {
   for_each(lint, "nodes", [&](const Json& node, size_t i) {
     const bool parts = node.contains("translation") || node.contains("rotation") || node.contains("scale");
-    if (parts && node.contains("matrix")) lint.say("nodes", i, "it has a matrix and its parts: the matrix counts");
+    if (parts && node.contains("matrix"))
+      lint.warn("nodes", i, "it has a matrix and also translation, rotation or scale: the matrix is used");
     if (!node.contains("mesh") && (node.contains("skin") || node.contains("weights"))) {
-      lint.say("nodes", i, "it has a skin or weights without a mesh");
+      lint.warn("nodes", i, "it has a skin or weights without a mesh");
     }
     double squares = 0;
     if (!node.contains("rotation")) return;
     for (const Json& each : node["rotation"]) squares += each.get<double>() * each.get<double>();
     if (std::abs(std::sqrt(squares) - 1) > 0.00674)
-      lint.say("nodes", i, "its rotation is not of unit length: it is made so");
+      lint.warn("nodes", i, "its rotation is not of unit length: it is normalized");
   });
 }
 
@@ -124,11 +130,11 @@ void lint_animations(const Lint& lint) {
     for (const Json& sampler : animation["samplers"]) {
       const Json& input = lint.entry("accessors", whole(sampler, "input", 0));
       const Json& output = lint.entry("accessors", whole(sampler, "output", 0));
-      if (!input.contains("min") || !input.contains("max")) lint.say("animations", i, "its times have no bounds");
+      if (!input.contains("min") || !input.contains("max")) lint.warn("animations", i, "its times have no bounds");
       if (whole(input, "componentType", 0) != 5126 || text_or(input, "type", "") != "SCALAR")
-        lint.say("animations", i, "its times are not floats");
+        lint.warn("animations", i, "its times are not floats");
       for (const Json* accessor : {&input, &output}) {
-        if (lint.view_of(*accessor).contains("byteStride")) lint.say("animations", i, "its keys have a byteStride");
+        if (lint.view_of(*accessor).contains("byteStride")) lint.warn("animations", i, "its keys have a byteStride");
       }
     }
   });
@@ -138,7 +144,7 @@ void lint_materials(const Lint& lint) {
   for_each(lint, "materials", [&](const Json& material, size_t i) {
     if (!material.contains("emissiveFactor")) return;
     for (const Json& each : material["emissiveFactor"]) {
-      if (each.get<double>() > 1) lint.say("materials", i, "its emissiveFactor is above 1: it is taken as it is");
+      if (each.get<double>() > 1) lint.warn("materials", i, "its emissiveFactor is above 1: it is used unchanged");
     }
   });
 }
@@ -183,18 +189,18 @@ void lint_skins(const Lint& lint) {
     const Json& joints = skin["joints"];
     const size_t root = family.root[joints[0].get<size_t>()];
     for (const Json& joint : joints) {
-      if (family.root[joint.get<size_t>()] != root) lint.say("skins", i, "its joints have no common root");
+      if (family.root[joint.get<size_t>()] != root) lint.warn("skins", i, "its joints have no common root");
     }
     if (skin.contains("skeleton") && !is_above_all(skin["skeleton"].get<size_t>(), joints, family)) {
-      lint.say("skins", i, "its skeleton is not above its joints");
+      lint.warn("skins", i, "its skeleton is not above its joints");
     }
     if (!skin.contains("inverseBindMatrices")) return;
     const Json& matrices = lint.entry("accessors", whole(skin, "inverseBindMatrices", 0));
     const bool floats = whole(matrices, "componentType", 0) == 5126 && text_or(matrices, "type", "") == "MAT4";
     if (!floats || whole(matrices, "count", 0) < joints.size()) {
-      lint.say("skins", i, "its matrices do not suit its joints");
+      lint.warn("skins", i, "its inverseBindMatrices are not one 4x4 float matrix per joint");
     }
-    if (lint.view_of(matrices).contains("byteStride")) lint.say("skins", i, "its matrices have a byteStride");
+    if (lint.view_of(matrices).contains("byteStride")) lint.warn("skins", i, "its matrices have a byteStride");
   });
 }
 

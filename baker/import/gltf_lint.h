@@ -17,7 +17,7 @@ struct Lint {
   const std::string& file;
   Warnings& warnings;
 
-  void say(const char* section, size_t index, const std::string& what) const {
+  void warn(const char* section, size_t index, const std::string& what) const {
     warnings.add(file, place(json, section, index), "breaks glTF: " + what);
   }
   const Json& entry(const char* section, size_t index) const { return json[section][index]; }

@@ -32,46 +32,48 @@ bool is_numbered_on(const std::string& name, const Json& attributes) {
 struct MeshLint {
   const Lint& lint;
   size_t mesh;
-  void say(const std::string& what) const { lint.say("meshes", mesh, what); }
+  void warn(const std::string& what) const { lint.warn("meshes", mesh, what); }
 
   void attribute(const std::string& name, const Json& accessor, bool quantized) const {
     const Json& view = lint.view_of(accessor);
     const uint64_t type = whole(accessor, "componentType", 0);
-    if (!is_known_attribute(name)) say("attribute '" + shortened(name, 40) + "' is unknown");
-    if (type == 5125) say("an attribute is of 32-bit integers");
-    if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) say("POSITION has no bounds");
+    if (!is_known_attribute(name)) warn("attribute '" + shortened(name, 40) + "' is unknown");
+    if (type == 5125) warn("an attribute is of 32-bit integers");
+    if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) warn("POSITION has no bounds");
     const bool floats = type == 5126 && accessor["type"] == "VEC3" && !accessor.value("normalized", false);
-    if ((name == "POSITION" || name == "NORMAL") && !quantized && !floats) say("an attribute is not of three floats");
+    if ((name == "POSITION" || name == "NORMAL") && !quantized && !floats)
+      warn("POSITION or NORMAL is not of three floats");
     if (whole(accessor, "byteOffset", 0) % 4 != 0 || element_bytes(accessor) % 4 != 0) {
       if (whole(view, "byteStride", element_bytes(accessor)) % 4 != 0 || whole(accessor, "byteOffset", 0) % 4 != 0) {
-        say("an attribute is not aligned to 4 bytes");
+        warn("an attribute is not aligned to 4 bytes");
       }
     }
-    if (whole(view, "target", vertex_target) != vertex_target) say("an attribute's buffer view is of another target");
+    if (whole(view, "target", vertex_target) != vertex_target)
+      warn("the target of an attribute's buffer view is not that of vertices");
   }
 
   void indices(const Json& accessor) const {
     const uint64_t type = whole(accessor, "componentType", 0);
     const bool right = accessor["type"] == "SCALAR" && (type == 5121 || type == 5123 || type == 5125);
-    if (!right || accessor.value("normalized", false)) say("indices are not of unsigned integers");
-    if (lint.view_of(accessor).contains("byteStride")) say("indices have a byteStride");
+    if (!right || accessor.value("normalized", false)) warn("indices are not of unsigned integers");
+    if (lint.view_of(accessor).contains("byteStride")) warn("indices have a byteStride");
     if (whole(lint.view_of(accessor), "target", index_target) != index_target)
-      say("indices' buffer view is of another target");
+      warn("the target of the indices' buffer view is not that of indices");
   }
 
   /// Checks one morph target. If it has a weight, the importer reads it later and may refuse it.
   void target(const Json& target, const Json& attributes) const {
     for (const auto& [name, value] : target.items()) {
       const Json& accessor = lint.entry("accessors", value.get<size_t>());
-      if (!is_known_attribute(name)) say("a morph target has an unknown attribute");
+      if (!is_known_attribute(name)) warn("a morph target has an unknown attribute");
       if (!attributes.contains(name)) {
-        say("a morph target has an attribute that its base lacks");
+        warn("a morph target has an attribute that its base lacks");
       } else if (accessor["count"] != lint.entry("accessors", attributes[name].get<size_t>())["count"]) {
-        say("a morph target has another count than its base");
+        warn("a morph target has a different number of elements than its base");
       }
-      if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) say("POSITION has no bounds");
+      if (name == "POSITION" && !(accessor.contains("min") && accessor.contains("max"))) warn("POSITION has no bounds");
       if (whole(lint.view_of(accessor), "target", vertex_target) != vertex_target) {
-        say("an attribute's buffer view is of another target");
+        warn("the target of an attribute's buffer view is not that of vertices");
       }
     }
   }
@@ -79,21 +81,21 @@ struct MeshLint {
   void primitive(const Json& primitive, bool quantized, std::vector<uint64_t>& shared) const {
     const Json& attributes = primitive["attributes"];
     std::set<uint64_t> counts;
-    if (attributes.empty()) say("a primitive has no attributes");
+    if (attributes.empty()) warn("a primitive has no attributes");
     for (const auto& [name, value] : attributes.items()) {
       const Json& accessor = lint.entry("accessors", value.get<size_t>());
       counts.insert(whole(accessor, "count", 0));
       attribute(name, accessor, quantized);
-      if (!is_numbered_on(name, attributes)) say("attributes' sets are not numbered from 0");
+      if (!is_numbered_on(name, attributes)) warn("an attribute's sets are not numbered from 0 without gaps");
       const bool joints = name.rfind("JOINTS_", 0) == 0;
-      if (joints && !attributes.contains("WEIGHTS_" + name.substr(7))) say("JOINTS come without WEIGHTS");
+      if (joints && !attributes.contains("WEIGHTS_" + name.substr(7))) warn("JOINTS come without WEIGHTS");
       if (name.rfind("WEIGHTS_", 0) == 0 && !attributes.contains("JOINTS_" + name.substr(8))) {
-        say("WEIGHTS come without JOINTS");
+        warn("WEIGHTS come without JOINTS");
       }
       if (accessor.contains("bufferView"))
         shared.push_back(whole(accessor, "bufferView", 0) << 32 | value.get<uint64_t>());
     }
-    if (counts.size() > 1) say("a primitive's attributes have different counts");
+    if (counts.size() > 1) warn("a primitive's attributes have different counts");
     if (primitive.contains("indices")) indices(lint.entry("accessors", primitive["indices"].get<size_t>()));
     if (!primitive.contains("targets") || !primitive["targets"].is_array()) return;
     for (const Json& each : primitive["targets"]) target(each, attributes);
@@ -107,7 +109,7 @@ void lint_strides(const Lint& lint, std::vector<uint64_t>& shared) {
   for (size_t i = 1; i < shared.size(); ++i) {
     const uint64_t view = shared[i] >> 32;
     if (view != shared[i - 1] >> 32 || lint.entry("bufferViews", view).contains("byteStride")) continue;
-    lint.say("bufferViews", view, "it has several attributes and no byteStride");
+    lint.warn("bufferViews", view, "it has several attributes and no byteStride");
   }
 }
 
@@ -126,9 +128,10 @@ void lint_meshes(const Lint& lint) {
       each.primitive(primitive, quantized, shared);
       target_counts.insert(section_size(primitive, "targets"));
     }
-    if (target_counts.size() > 1) each.say("its primitives have different numbers of morph targets");
+    if (target_counts.size() > 1) each.warn("its primitives have different numbers of morph targets");
     const bool weights = mesh.contains("weights") && mesh["weights"].is_array();
-    if (weights && !target_counts.contains(mesh["weights"].size())) each.say("it has not one weight per morph target");
+    if (weights && !target_counts.contains(mesh["weights"].size()))
+      each.warn("its weights are not one per morph target");
   }
   lint_strides(lint, shared);
 }

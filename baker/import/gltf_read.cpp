@@ -276,7 +276,7 @@ void check_extensions(const Json& json, const std::string& file, Warnings& warni
     if (!it->is_array()) fail(file + ": " + key, "is not an array");
     for (const Json& name : *it) {
       if (!name.is_string())
-        fail(file + ": " + key, "holds something else than a name (" + shortened(name.dump(), 60) + ")");
+        fail(file + ": " + key, "contains something other than a name (" + shortened(name.dump(), 60) + ")");
       if (known.contains(name.get<std::string>())) continue;
       const auto& text = name.get_ref<const std::string&>();
       if (key == std::string("extensionsRequired"))

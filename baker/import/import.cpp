@@ -149,7 +149,7 @@ uint32_t settle_joints(Mesh& mesh) {
 void check_joints(const Import& in, size_t node, uint32_t asked, size_t joints) {
   if (asked <= joints) return;
   fail(in.gltf.file + ": " + place(in.gltf.json, "nodes", node),
-       "its mesh asks for joints that its skin lacks, which has " + std::to_string(joints) + " (" +
+       "its mesh uses joints that its skin lacks; the skin's number of joints is " + std::to_string(joints) + " (" +
            std::to_string(asked - 1) + ")");
 }
 

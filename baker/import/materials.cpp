@@ -25,7 +25,7 @@ Wrap wrap_of(int gltf_wrap, const std::string& where) {
     case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
       return Wrap::mirrored_repeat;
     default:
-      fail(where, "is no wrap mode (" + std::to_string(gltf_wrap) + ")");
+      fail(where, "is not a wrap mode (" + std::to_string(gltf_wrap) + ")");
   }
 }
 
@@ -42,7 +42,7 @@ Filter filter_of(int gltf_filter, const std::string& where) {
     case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
       return Filter::linear;
     default:
-      fail(where, "is no filter (" + std::to_string(gltf_filter) + ")");
+      fail(where, "is not a filter (" + std::to_string(gltf_filter) + ")");
   }
 }
 
@@ -169,7 +169,7 @@ std::optional<uint32_t> Materials::image_of(const Json& texture, bool alpha, con
   }
   const std::string what =
       lacking ? "has no PNG, JPEG or WebP image but only that of KHR_texture_basisu" : "texture has no image";
-  if (alpha && lacking) fail(gltf_.file + ": " + where, what + ", whose alpha would make shadows");
+  if (alpha && lacking) fail(gltf_.file + ": " + where, what + ", but shadows need its alpha");
   warnings_.add(gltf_.file, where, what + " and is left out");
   return std::nullopt;
 }
@@ -201,7 +201,8 @@ void Materials::convert(const Json& glossy, bool alpha, const std::string& here,
   }
   if (mirrored) factors.specular_glossiness = scene_.textures[mirror.texture].image;
   if (colored && mirrored && !alike) {
-    warnings_.add(gltf_.file, where, "its two textures are mapped differently: what is metal in them is not told");
+    warnings_.add(gltf_.file, where,
+                  "its two textures are mapped differently, so all of it is treated as non-metallic");
     out.base_color = diffuse;
     out.base_color_factor = {factors.diffuse_factor, diffuse_factor[3]};
     out.metallic_factor = 0;

@@ -20,8 +20,8 @@ void apply(const VertexSource& source, size_t target, const char* name, std::vec
   const std::string where = source.where + ", morph target " + std::to_string(target) + ", " + name;
   const Elements deltas = elements_of(source.gltf, it->second, 3, 3, where);
   if (deltas.count != source.vertex_count) {
-    fail(where, "has another count than POSITION, which has " + std::to_string(source.vertex_count) + " (" +
-                    std::to_string(deltas.count) + ")");
+    fail(where, "has a different number of elements than POSITION, which has " + std::to_string(source.vertex_count) +
+                    " (" + std::to_string(deltas.count) + ")");
   }
   const double weight = source.morph_weights[target];
   FirstFault not_finite;
@@ -68,7 +68,7 @@ void add_morph_size(const Gltf& gltf, const tinygltf::Primitive& primitive, std:
                     const std::string& where, uint64_t& morphed) {
   if (weights.empty()) return;
   if (weights.size() != primitive.targets.size()) {
-    fail(where, "has another count of morph targets than its weights, which are " + std::to_string(weights.size()) +
+    fail(where, "has a different number of morph targets than of weights, which are " + std::to_string(weights.size()) +
                     " (" + std::to_string(primitive.targets.size()) + ")");
   }
   for (size_t t = 0; t < weights.size(); ++t) {
@@ -103,7 +103,7 @@ bool apply_morphs(const VertexSource& source, Primitive& out) {
     Vertex& vertex = out.vertices[i];
     if (!is_finite(vertex.position_ls)) {
       fail(source.where + ", attribute POSITION",
-           "its morph targets move it beyond a float (element " + std::to_string(i) + ")");
+           "its morph targets move it to a position that is too large for a float (element " + std::to_string(i) + ")");
     }
     const glm::vec3 normal = unit_or_zero(vertex.normal_ls), tangent = unit_or_zero(glm::vec3(vertex.tangent_ls));
     broken = broken || normal == glm::vec3(0);

@@ -145,7 +145,7 @@ void add_skin(const Gltf& gltf, size_t number, const std::vector<glm::dmat4>& wo
     return;
   }
   if (!is_bind_pose(pose.world_from_bind, places)) {
-    warnings.add(gltf.file, here, "a skin that is animated is not played: its meshes are shown in their bind pose");
+    warnings.add(gltf.file, here, "animation of a skin is not played: its meshes are shown in their bind pose");
   }
   motion.placed[number] = pose.world_from_bind[0];
   motion.skin[number] = fit_u32(scene.skins.size(), "skins");

@@ -62,7 +62,7 @@ void check_place(const glm::dmat4& m, const std::string& where) {
   for (int i = 0; i < 16; ++i) {
     const double value = m[i / 4][i % 4];
     if (!std::isfinite(static_cast<float>(value))) {
-      fail(where, "its place in the world is beyond a float (" + to_text(value) + ")");
+      fail(where, "its position in the world is too large for a float (" + to_text(value) + ")");
     }
   }
 }

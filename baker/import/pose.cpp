@@ -56,7 +56,8 @@ void apply_pose(const Pose& pose, const std::string& where, Mesh& mesh) {
       }
     });
     if (beyond.at() != SIZE_MAX) {
-      fail(where, "its skin moves a vertex beyond a float (vertex " + std::to_string(beyond.at()) + ")");
+      fail(where, "its skin moves a vertex to a position that is too large for a float (vertex " +
+                      std::to_string(beyond.at()) + ")");
     }
     for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
       uint32_t* corner = &primitive.indices[i];

@@ -30,7 +30,7 @@ std::optional<size_t> find_scene(const Json& json, const std::string& asked) {
     names += (i ? ", " : "") + place(gltf.json, "scenes", i);
   }
   if (count > most_listed) names += " and " + std::to_string(count - most_listed) + " more";
-  fail(gltf.file + ": --scene", "there is no such scene, but " + names + " (" + shortened(asked, 80) + ")");
+  fail(gltf.file + ": --scene", "there is no such scene; the scenes are " + names + " (" + shortened(asked, 80) + ")");
 }
 
 }  // namespace

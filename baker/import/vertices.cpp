@@ -138,8 +138,8 @@ Elements attribute_of(const VertexSource& source, const char* name, size_t least
     out = elements_of(source.gltf, it->second, least, most, where);
   }
   if (out.count != source.vertex_count) {
-    fail(where, "has another count than POSITION, which has " + std::to_string(source.vertex_count) + " (" +
-                    std::to_string(out.count) + ")");
+    fail(where, "has a different number of elements than POSITION, which has " + std::to_string(source.vertex_count) +
+                    " (" + std::to_string(out.count) + ")");
   }
   return out;
 }

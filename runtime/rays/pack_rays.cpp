@@ -135,7 +135,7 @@ bool PackRays::cast_at_instance(uint32_t instance, const glm::vec3& from_ws, con
   const uint32_t end = mesh.first_node + mesh.node_count;
   const bool stops = walk(pack_.triangle_bvh, mesh.first_node, end, ray_ls, [&](uint32_t item) {
     const Triangle& triangle = (*triangles_)[item];
-    const float t = ray_ls.meet_triangle(triangle.corners_ls);
+    const float t = ray_ls.intersect_triangle(triangle.corners_ls);
     if (t == INFINITY || !is_met(triangle.batch, meets)) return false;
     ray_ls.farthest = t;
     met = {instance, triangle.batch, 3 * pack_.triangle_bvh_items[item].triangle};
@@ -150,7 +150,7 @@ bool PackRays::cast_at_batch(uint32_t instance, uint32_t number, Meets meets, Ra
   if (is_passed(instance, meets) || !is_met(number, meets)) return false;
   const pack::Batch& batch = pack_.batches[number];
   for (uint32_t i = batch.first_index; i < batch.first_index + batch.index_count; i += 3) {
-    const float t = ray.meet_triangle(corners_ws(instance, i));
+    const float t = ray.intersect_triangle(corners_ws(instance, i));
     if (t == INFINITY) continue;
     ray.farthest = t;
     met = {instance, number, i};

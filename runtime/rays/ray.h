@@ -39,7 +39,7 @@ class Ray {
 
   /// The t at which the ray meets the triangle from either side, else infinity. Two triangles that share an edge leave
   /// no gap between them (Woop, Benthin, Wald 2013, watertight ray/triangle intersection).
-  float meet_triangle(const std::array<glm::vec3, 3>& corners) const {
+  float intersect_triangle(const std::array<glm::vec3, 3>& corners) const {
     glm::vec2 p[3];
     for (int i = 0; i < 3; ++i) {
       const glm::vec3 d = corners[i] - from_;

@@ -264,7 +264,7 @@ struct Bundle {
   size_t count = 0;
 
   void add(const Sight& way, size_t number, RTCScene scene, std::span<uint8_t> lit) {
-    if (count == rays_at_once) look(scene, lit);
+    if (count == rays_at_once) trace(scene, lit);
     const size_t i = count++;
     valid[i] = -1;
     point[i] = number;
@@ -275,7 +275,7 @@ struct Bundle {
   }
 
   // Counts clear rays, and empties the bundle.
-  void look(RTCScene scene, std::span<uint8_t> lit) {
+  void trace(RTCScene scene, std::span<uint8_t> lit) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -303,7 +303,7 @@ void RayScene::answer_part(const VisibilityQuery& query, size_t first, size_t en
     const Disc disc(*to_middle, query.radius_m, i);
     for (uint32_t ray = 0; ray < rays; ++ray) bundle.add(disc.sight(ray), i, scene_.get(), lit);
   }
-  bundle.look(scene_.get(), lit);
+  bundle.trace(scene_.get(), lit);
   for (size_t i = first; i < end; ++i) lit[i] = static_cast<uint8_t>((lit[i] * 255 + rays / 2) / rays);
 }
 

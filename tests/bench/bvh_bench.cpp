@@ -58,7 +58,7 @@ pack::Contents baked(Scene scene) {
   return bake(std::move(scene), {}, Progress(false), report, warnings);
 }
 
-void tell(benchmark::State& state, uint64_t triangles, double nodes, double sah_cost) {
+void set_counters(benchmark::State& state, uint64_t triangles, double nodes, double sah_cost) {
   const auto count = static_cast<double>(triangles);
   state.counters["triangles"] = count;
   state.counters["triangles/s"] = benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
@@ -79,7 +79,7 @@ void build(benchmark::State& state, pack::Contents pack) {
   for (const auto& [what, value] : pass.counts) {
     if (what == "sah_cost") sah_cost = value;
   }
-  tell(state, pack.triangle_bvh_items.size(), static_cast<double>(pack.triangle_bvh.size()), sah_cost);
+  set_counters(state, pack.triangle_bvh_items.size(), static_cast<double>(pack.triangle_bvh.size()), sah_cost);
 }
 
 void add(const std::string& name, Scene scene) {

@@ -41,7 +41,7 @@ def test_over_budget_line_names_who_loses():
         "Over budget: 26 maps, 156 MiB wanted; distance 1.25 m; without their own map: lamp 0, lamp 1")
     assert bill.over_budget_line(OVER, names).endswith("lamp 6, lamp 7 and 2 more")
     missed = replace(OVER, misses_budget=True)
-    assert bill.over_budget_line(missed, names) == "Over budget: 26 maps, 156 MiB wanted, and no distance meets it"
+    assert bill.over_budget_line(missed, names) == "Over budget: 26 maps, 156 MiB wanted, and no distance between lights meets the budget"
 
 
 def test_over_budget_names():

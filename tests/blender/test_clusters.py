@@ -157,5 +157,5 @@ def test_a_library_that_is_none_is_passed_over(tmp_path, monkeypatch):
 def test_a_library_of_another_version_is_refused(monkeypatch):
     library = core_or_skip(clusters.Library)
     monkeypatch.setattr(clusters, "ABI", 99)
-    with pytest.raises(clusters.PreviewError, match="is of version 2 instead of 99"):
+    with pytest.raises(clusters.PreviewError, match="has interface version 2, but the add-on needs 99"):
         clusters.Library(library.path)

@@ -82,7 +82,7 @@ time.sleep(60)""")])
     assert job.doing == "find_geometry" and 0 < job.progress < 0.2
     job.cancel()
     assert not job.is_running() and job.error == "chandelier-bake: cancelled"
-    assert not os.path.exists(job.said_path)
+    assert not os.path.exists(job.output_path)
 
 
 def test_one_that_does_not_listen_is_ended_too(tmp_path, monkeypatch):

@@ -320,13 +320,13 @@ class Bad(BakeTest):
                 self.write("a.png", data)
                 said = self.warnings_of("-q", scene, "--json", "report.json")
                 self.assertEqual(len(said), 1, said)
-                self.assertRegex(said[0], r"/a\.gltf: images: PNG is .*: what could be decoded is baked; --strict refuses it \(image 0 'wall' \(a\.png\)\)$")
+                self.assertRegex(said[0], r"/a\.gltf: images: PNG is .*: the part that can be decoded is baked; --strict refuses such images \(image 0 'wall' \(a\.png\)\)$")
                 images = next(each for each in json.loads((self.folder / "report.json").read_text())["passes"] if each["name"] == "images")
                 self.assertEqual(images["counts"]["damaged"], 1)
                 for _ in range(2):  # made and kept, then found
                     self.assertEqual(self.warnings_of("-q", scene, "--cache", "cache"), said)
                 self.assert_refused(scene, "--strict", says="a.gltf: image 0 'wall' (a.png): PNG is ")
-                self.assert_refused(scene, "--strict", "--cache", "cache", says=", and --strict was asked for")
+                self.assert_refused(scene, "--strict", "--cache", "cache", says=", which --strict refuses")
 
     def test_line_breaks_in_names(self):
         gltf = textured("a\nb.png")

@@ -96,7 +96,7 @@ class Report(BakeTool):
                                 (["--json", "x" * 300], "File name too long"),
                                 (["--depfile", "/dev/null"], "exists and is not a regular file"),
                                 (["--cache", "x" * 300], "cannot make the cache's folder (File name too long)"),
-                                (["--depfile", self.pack], "is named as two outputs"),
+                                (["--depfile", self.pack], "is used for two outputs"),
                                 (["--depfile", scene], "the output is one of the inputs"),
                                 (["--json", scene.parent / "room.bin"], "the output is one of the inputs")):
             with self.subTest(arguments=arguments):

@@ -140,7 +140,7 @@ class Scenes(BakeTest):
     def test_one_that_is_not_there(self):
         for name in ("3", "-1", "1.0", "Upper floor", "1 "):
             self.assert_refused(self.scene, "--scene", name,
-                                says=f"house.gltf: --scene: there is no such scene, but scene 0, scene 1 'upper floor', scene 2 '0' ({name})")
+                                says=f"house.gltf: --scene: there is no such scene; the scenes are scene 0, scene 1 'upper floor', scene 2 '0' ({name})")
         self.assert_refused(self.write("a.gltf", triangle()), "--scene", "7", says="--scene: no input has such a scene (7)")
 
     def test_an_input_with_one_scene_stays_as_it_is(self):

@@ -39,13 +39,13 @@ const Case cases[] = {
     {"child out of range", [](GltfBuilder& g) { g.json["nodes"][0]["children"] = {1}; },
      "node 0 'triangle', children: points past the end, there are 1 (1)"},
     {"node below itself", [](GltfBuilder& g) { g.json["nodes"][0]["children"] = {0}; },
-     "node 0 'triangle': is below itself (a cycle of nodes)"},
+     "node 0 'triangle': is its own ancestor (a cycle of nodes)"},
     {"cycle of two",
      [](GltfBuilder& g) {
        g.json["nodes"][0]["children"] = {1};
        g.add_node({{"children", {0}}});
      },
-     "node 0 'triangle': is below itself (a cycle of nodes)"},
+     "node 0 'triangle': is its own ancestor (a cycle of nodes)"},
     {"two parents",
      [](GltfBuilder& g) {
        g.add_node({{"children", {0}}});
@@ -78,13 +78,13 @@ const Case cases[] = {
        g.json["nodes"][0]["children"] = {1};
        g.add_node({{"scale", {1e30, 1, 1}}});
      },
-     "node 1: its place in the world is beyond a float (1e+60)"},
+     "node 1: its position in the world is too large for a float (1e+60)"},
     {"vertices that overflow",
      [](GltfBuilder& g) {
        primitive(g)["attributes"]["POSITION"] = g.add_positions({0, 0, 0, 1e30f, 0, 0, 0, 1e30f, 0});
        g.json["nodes"][0]["scale"] = {1e9, 1e9, 1e9};
      },
-     "node 0 'triangle': reaches beyond a float in the world (x inf)"},
+     "node 0 'triangle': has a coordinate in the world that is too large for a float (x inf)"},
     {"NaN position",
      [](GltfBuilder& g) {
        primitive(g)["attributes"]["POSITION"] = g.add_positions({0, 0, 0, 1, NAN, 0, 0, 1, 0});
@@ -118,7 +118,7 @@ const Case cases[] = {
      [](GltfBuilder& g) {
        primitive(g)["attributes"]["NORMAL"] = g.add_positions({0, 0, 1});
      },
-     "mesh 0, primitive 0, attribute NORMAL: has another count than POSITION, which has 3 (1)"},
+     "mesh 0, primitive 0, attribute NORMAL: has a different number of elements than POSITION, which has 3 (1)"},
     {"material out of range", [](GltfBuilder& g) { primitive(g)["material"] = 0; },
      "mesh 0, primitive 0, material: points past the end, there are 0 (0)"},
     {"accessor past its view", [](GltfBuilder& g) { g.json["accessors"][0]["count"] = 4; },

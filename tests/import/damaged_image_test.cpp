@@ -170,8 +170,9 @@ TEST(Damaged, ImagesAreNamedInAWarningOrWhereThatIsStrictInAnError) {
   Warnings warnings;
   bake(gltf.import(), {}, Progress(false), report, warnings);
   ASSERT_EQ(warnings.lines().size(), 1u);
-  EXPECT_NE(warnings.lines()[0].find("scene.gltf: images: JPEG is cut short (" + size +
-                                     " bytes): what could be decoded is baked; --strict refuses it (image 0 'bark')"),
+  EXPECT_NE(warnings.lines()[0].find(
+                "scene.gltf: images: JPEG is cut short (" + size +
+                " bytes): the part that can be decoded is baked; --strict refuses such images (image 0 'bark')"),
             std::string::npos)
       << warnings.lines()[0];
   BakeSettings strict;

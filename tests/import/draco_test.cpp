@@ -97,7 +97,7 @@ TEST(Draco, IsRefusedWhereItsNumbersDoNotFit) {
   EXPECT_NE(box.error().find(at + ", attribute POSITION: Draco stream has no such attribute (77)"), std::string::npos);
   box.json = good;
   box.stream[0] = 'X';
-  EXPECT_NE(box.error().find(at + ": is no Draco stream"), std::string::npos);
+  EXPECT_NE(box.error().find(at + ": is not a Draco stream"), std::string::npos);
 }
 
 TEST(Draco, SurvivesEveryChangedByteAndEveryTruncation) {

@@ -369,7 +369,7 @@ TEST(TextureSource, IsAnErrorWhereItsAlphaWouldMakeShadows) {
   EXPECT_NE(
       error_of(gltf.save("bad"))
           .find("material 0, baseColorTexture: has no PNG, JPEG or WebP image but only that of KHR_texture_basisu, "
-                "whose alpha would make shadows"),
+                "but shadows need its alpha"),
       std::string::npos);
 }
 

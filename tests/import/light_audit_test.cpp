@@ -284,7 +284,7 @@ TEST(LightAudit, NamesLightsWhoseGroupIsNotAllThatTheirAuthorSaid) {
   for (const float x : {-2.0f, 0.0f, 2.0f}) stage.add_light({x, 3, 0}, 40 + x).group = "row";
   expect_peace(stage);
   stage.scene.lights[1].unclustered = true;
-  expect_one(stage, "in a group and cluster false: they share the group's shadow map (lamp 1)");
+  expect_one(stage, "in a group although cluster is false: they share the group's shadow map (lamp 1)");
   stage.scene.lights[1].unclustered = false;
   stage.scene.lights[2].type = LightType::directional;
   expect_one(stage, "directional in a group with lights of another type: they share no map with those (lamp 2)");

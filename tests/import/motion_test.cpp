@@ -101,7 +101,7 @@ TEST(Animation, SkipsMorphWeightsWithAWarning) {
   EXPECT_TRUE(scene.animations.empty());
   EXPECT_TRUE(scene.nodes.empty());
   ASSERT_EQ(warnings.lines().size(), 1u);
-  EXPECT_NE(warnings.lines()[0].find("animation of something else than a node's place is skipped (weights)"),
+  EXPECT_NE(warnings.lines()[0].find("animation of something other than a node's transform is skipped (weights)"),
             std::string::npos);
 }
 
@@ -164,7 +164,7 @@ TEST(Skin, ThatIsAnimatedSaysWhereItsBindPoseIsNotWhatTheFileShows) {
   gltf.json["nodes"][2]["translation"] = {0, 1, 0.5};
   gltf.import(&one);
   ASSERT_EQ(one.lines().size(), 1u);
-  EXPECT_NE(one.lines()[0].find("skin 0 'leg': a skin that is animated is not played"), std::string::npos);
+  EXPECT_NE(one.lines()[0].find("skin 0 'leg': animation of a skin is not played"), std::string::npos);
 }
 
 TEST(Skin, ThatStandsFarAwaySaysSoToo) {
@@ -178,7 +178,7 @@ TEST(Skin, ThatStandsFarAwaySaysSoToo) {
   gltf.json["nodes"][2]["translation"] = {0, 1, 0.5};
   gltf.import(&one);
   ASSERT_EQ(one.lines().size(), 1u);
-  EXPECT_NE(one.lines()[0].find("skin 0 'leg': a skin that is animated is not played"), std::string::npos);
+  EXPECT_NE(one.lines()[0].find("skin 0 'leg': animation of a skin is not played"), std::string::npos);
 }
 
 TEST(Animation, KeepsAMeshThatGrowsFromNothing) {
@@ -344,7 +344,7 @@ TEST(Animation, IsRefusedWhereItCannotBePlayed) {
         [](GltfBuilder& g) {
           sampler(g)["input"] = g.add_floats({-1, 1}, "SCALAR", 1);
         },
-        "animation 0 'wave', sampler 0, input: a key is before the start (-1 s)"},
+        "animation 0 'wave', sampler 0, input: a key has a negative time (-1 s)"},
        {"infinite time",
         [](GltfBuilder& g) {
           sampler(g)["input"] = g.add_floats({0, INFINITY}, "SCALAR", 1);
@@ -354,7 +354,7 @@ TEST(Animation, IsRefusedWhereItCannotBePlayed) {
         [](GltfBuilder& g) {
           sampler(g)["output"] = g.add_floats({0, 0, 0, 1}, "VEC4", 4);
         },
-        "animation 0 'wave', sampler 0, output: has another count than its keys ask for, 2 (1)"},
+        "animation 0 'wave', sampler 0, output: has a different number of values than its keys need, 2 (1)"},
        {"three components",
         [](GltfBuilder& g) {
           sampler(g)["output"] = g.add_positions({0, 0, 0, 1, 0, 0});
@@ -390,7 +390,7 @@ TEST(Skin, IsRefusedWhereItCannotPose) {
                   },
                   "skin 0 'leg', inverseBindMatrices: the last row of a matrix is not 0, 0, 0, 1 (1 in matrix 0)"},
                  {"joint that the skin lacks", [](GltfBuilder& g) { g.json["skins"][0]["joints"] = {1}; },
-                  "node 0 'triangle': its mesh asks for joints that its skin lacks, which has 1 (1)"},
+                  "node 0 'triangle': its mesh uses joints that its skin lacks; the skin's number of joints is 1 (1)"},
                  {"negative weight",
                   [](GltfBuilder& g) {
                     g.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] =

@@ -186,8 +186,10 @@ TEST(Node, WhoseVisibilityIsAnimatedStaysAsItIsWithALine) {
   EXPECT_EQ(gltf.import(&warnings).instances.size(), 1u);
   const std::vector<std::string> lines = warnings.lines();
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
-    return line.find("animation 0: animation by KHR_animation_pointer is skipped: what it changes stays as it is (" +
-                     pointer + ")") != std::string::npos;
+    return line.find(
+               "animation 0: animation by KHR_animation_pointer is skipped: the properties that it changes stay as "
+               "they are (" +
+               pointer + ")") != std::string::npos;
   }));
 }
 

@@ -175,12 +175,12 @@ TEST(Morph, IsRefusedWhereItsShapeIsNotKnown) {
         return gltf;
       },
       {{"few weights", [](GltfBuilder& g) { g.json["meshes"][0]["weights"] = {1}; },
-        "mesh 0, primitive 0: has another count of morph targets than its weights, which are 1 (2)"},
+        "mesh 0, primitive 0: has a different number of morph targets than of weights, which are 1 (2)"},
        {"many weights of the node",
         [](GltfBuilder& g) {
           g.json["nodes"][0]["weights"] = {1, 2, 3};
         },
-        "mesh 0, primitive 0: has another count of morph targets than its weights, which are 3 (2)"},
+        "mesh 0, primitive 0: has a different number of morph targets than of weights, which are 3 (2)"},
        {"weights that are none", [](GltfBuilder& g) { g.json["meshes"][0]["weights"] = "all"; },
         "mesh 0, weights: is not an array (\"all\")"},
        {"a weight that is no number",
@@ -201,7 +201,8 @@ TEST(Morph, IsRefusedWhereItsShapeIsNotKnown) {
         [](GltfBuilder& g) {
           set_target(g, g.add_positions({0, 0, 0}));
         },
-        "mesh 0, primitive 0, morph target 0, POSITION: has another count than POSITION, which has 3 (1)"},
+        "mesh 0, primitive 0, morph target 0, POSITION: has a different number of elements than POSITION, which has 3 "
+        "(1)"},
        {"another type",
         [](GltfBuilder& g) {
           set_target(g, g.add_floats({0, 0, 0, 0, 0, 0}, "VEC2", 2));
@@ -217,7 +218,8 @@ TEST(Morph, IsRefusedWhereItsShapeIsNotKnown) {
           g.json["meshes"][0]["weights"] = {1e30, 0};
           set_target(g, g.add_floats({0, 0, 0, 0, 0, 0, 1e30f, 0, 0}, "VEC3", 3));
         },
-        "mesh 0, primitive 0, attribute POSITION: its morph targets move it beyond a float (element 2)"}});
+        "mesh 0, primitive 0, attribute POSITION: its morph targets move it to a position that is too large for a "
+        "float (element 2)"}});
 }
 
 /// A thousand targets of one accessor of four million zeros: 4 GiB of sums for 30 kB of JSON.
@@ -374,7 +376,7 @@ TEST(PosedSkin, IsSharedByNodesAndApartFromTheBareMesh) {
 TEST(PosedSkin, IsRefusedWhereItCannotBeWorkedOut) {
   expect_errors([] { return posed_triangle(); },
                 {{"joint that the skin lacks", [](GltfBuilder& g) { g.json["skins"][0]["joints"] = {1}; },
-                  "node 0 'triangle': its mesh asks for joints that its skin lacks, which has 1 (1)"},
+                  "node 0 'triangle': its mesh uses joints that its skin lacks; the skin's number of joints is 1 (1)"},
                  {"beyond a float",
                   [](GltfBuilder& g) {
                     std::vector<float> matrices(32, 0);
@@ -382,7 +384,7 @@ TEST(PosedSkin, IsRefusedWhereItCannotBeWorkedOut) {
                     g.json["skins"][0]["inverseBindMatrices"] = g.add_floats(matrices, "MAT4", 16);
                     g.json["nodes"][1]["scale"] = {1e30, 1, 1};
                   },
-                  "mesh 0: its skin moves a vertex beyond a float (vertex 1)"}});
+                  "mesh 0: its skin moves a vertex to a position that is too large for a float (vertex 1)"}});
 }
 
 }  // namespace

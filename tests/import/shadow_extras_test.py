@@ -112,8 +112,8 @@ class ShadowExtras(unittest.TestCase):
         gltf["nodes"].append({"name": "lamp", "children": [0], "extras": {"chandelier": {"shadow": False}}})
         result = self.bake(gltf)
         self.assertEqual(result.returncode, 0)
-        self.assertIn("node 1 'lamp': extras.chandelier.shadow of a node without mesh and light is ignored: it says "
-                      "nothing of children", result.stderr)
+        self.assertIn("node 1 'lamp': extras.chandelier.shadow of a node without mesh and light is ignored: it "
+                      "does not apply to children", result.stderr)
         self.assertEqual(json.loads(self.inspect("--json"))["shadowless_instances"], 0)
 
     def test_each_copy_of_a_node_throws_none(self):

@@ -40,7 +40,7 @@ std::vector<char> put_together(const Parts& parts) {
 
 struct Lie {
   const char* name;
-  std::function<void(Parts&)> tell;
+  std::function<void(Parts&)> corrupt;
   const char* error;
 };
 
@@ -129,7 +129,7 @@ TEST_P(PackTable, LieIsNamed) {
   write(folder / "a.pack", sample());
   Parts parts = take_apart(read_file(folder / "a.pack"));
   const uint64_t checksum = parts.header.table_checksum;
-  GetParam().tell(parts);
+  GetParam().corrupt(parts);
   if (parts.header.table_checksum == checksum && parts.header.section_count == parts.table.size()) {
     parts.header.table_checksum = XXH3_64bits(parts.table.data(), parts.table.size() * sizeof(SectionEntry));
   }

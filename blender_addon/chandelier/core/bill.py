@@ -56,7 +56,7 @@ def over_budget_line(bill, names):
         return ""
     wanted = f"{_counted(bill.wanted_shadow_maps, 'map')}, {mib(bill.wanted_shadow_bytes)} MiB wanted"
     if bill.misses_budget:
-        return f"Over budget: {wanted}, and no distance meets it"
+        return f"Over budget: {wanted}, and no distance between lights meets the budget"
     shown = ", ".join(names[:MOST_NAMES])
     more = len(names) - MOST_NAMES
     shown += f" and {more} more" if more > 0 else ""

@@ -166,7 +166,7 @@ class Library:
             raise PreviewError(f"{self.path}: cannot be loaded ({error})") from error
         abi.restype, abi.argtypes = _u32, ()
         if abi() != ABI:
-            raise PreviewError(f"{self.path}: is of version {abi()} instead of {ABI}")
+            raise PreviewError(f"{self.path}: has interface version {abi()}, but the add-on needs {ABI}")
         self._select.restype = ctypes.c_int32
         self._select.argtypes = (_pointer,) * 5 + (ctypes.c_size_t,)
 

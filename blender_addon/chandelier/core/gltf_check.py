@@ -27,7 +27,7 @@ def read_json(path):
     data = pathlib.Path(path).read_bytes()
     if data[:4] == b"glTF":
         if len(data) < 20 or data[16:20] != b"JSON":
-            raise ValueError(f"{path}: is not a whole .glb")
+            raise ValueError(f"{path}: is not a complete .glb")
         data = data[20:20 + struct.unpack_from("<I", data, 12)[0]]
     try:
         return json.loads(data)
@@ -105,7 +105,7 @@ def check_lights(gltf, table):
         if table.type[row] == photometry.DIRECTIONAL:
             near = free & (types == table.type[row])  # a sun has no position
         if not near.any():
-            result.errors.append(f"{name}: is not in the file where it should be")
+            result.errors.append(f"{name}: the file has no light of its type at its position")
             continue
         numbers = np.flatnonzero(near)
         misfit = apart[numbers] + abs(intensities[numbers] / table.intensity[row] - 1)

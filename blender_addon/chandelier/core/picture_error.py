@@ -28,7 +28,7 @@ def read_pfm(path):
     data = open(path, "rb").read()
     head = re.match(rb"PF\s+(\d+)\s+(\d+)\s+(-?[\d.]+)\s", data)
     if not head:
-        raise ValueError(f"{path}: is no colour PFM")
+        raise ValueError(f"{path}: is not a colour PFM")
     width, height = int(head[1]), int(head[2])
     order = "<" if float(head[3]) < 0 else ">"
     values = np.frombuffer(data, f"{order}f4", offset=head.end())
@@ -46,7 +46,7 @@ def relative(reference, ours):
 
 def error_of(reference, ours):
     if reference.shape != ours.shape:
-        raise ValueError(f"pictures of {reference.shape[1]}x{reference.shape[0]} and {ours.shape[1]}x{ours.shape[0]} pixels")
+        raise ValueError(f"the pictures differ in size: {reference.shape[1]}x{reference.shape[0]} and {ours.shape[1]}x{ours.shape[0]} pixels")
     mean = max(float(reference.mean(dtype=np.float64)), 1e-30)
     difference = ours.astype(np.float64) - reference
     return Error(float(difference.mean()) / mean, float(np.abs(difference).mean()) / mean,

@@ -70,7 +70,7 @@ class Apart:
     def __init__(self, distance):
         self.distance, self.cells = distance, {}
 
-    def take(self, point):
+    def add(self, point):
         """Adds the point if it is far enough from all others. Returns whether it was added."""
         if self.distance <= 0:
             return True
@@ -92,7 +92,7 @@ def thinned(points, distance, count, rng):
     for number in rng.permutation(len(points)):
         if count and len(chosen) == count:
             break
-        if apart.take(points[number].tolist()):
+        if apart.add(points[number].tolist()):
             chosen.append(int(number))
     return sorted(chosen)
 
@@ -110,7 +110,7 @@ def scattered(lower, upper, distance, count, rng, inside=None):
         for point in thrown.tolist():
             if len(points) == (count or MOST):
                 return np.array(points).reshape(-1, 3)
-            if apart.take(point):
+            if apart.add(point):
                 points.append(point)
     return np.array(points).reshape(-1, 3)
 

@@ -18,7 +18,7 @@ PASSES = {
     "weld": 2, "clean": 3, "shells": 4, "batches": 12, "instances": 1, "batch_bvh": 1, "instance_bvh": 1, "triangle_bvh": 10, "voxels": 5,
     "keep_geometry": 1, "images": 20, "lights": 1, "light_bvh": 1, "light_audit": 2, "write": 13, "check": 4, "sync": 3}
 PASS_LINE = re.compile(r"^chandelier-bake: +[\d.]+ s: +[\d.]+ s for (?:.+, )?(\w+)$")  # the last of passes that share a line
-TOLD_LINE = re.compile(r"^chandelier-\w+: (error|warning): (.*)$")
+MESSAGE_LINE = re.compile(r"^chandelier-\w+: (error|warning): (.*)$")
 PATIENCE_S = 3  # how long a program may take to end
 
 
@@ -50,7 +50,7 @@ def find(tool, folders):
     if found:
         return found
     looked = ", ".join(map(str, folders))
-    raise ToolError(f"{tool}: is neither in PATH nor in {looked}: name its folder in the add-on's preferences")
+    raise ToolError(f"{tool}: is neither in PATH nor in {looked}: set its folder in the add-on's preferences")
 
 
 def bake_command(program, scene, pack, cache=None):
@@ -91,8 +91,8 @@ class Job:
         self.doing, self.warnings, self.last, self.error = "", [], "", ""
         self.passed = 0  # number of PASSES that are done or were left out
         self.cancelled = False
-        writing, self.said_path = tempfile.mkstemp(prefix="chandelier-")
-        self.said = open(self.said_path, "rb")
+        writing, self.output_path = tempfile.mkstemp(prefix="chandelier-")
+        self.output = open(self.output_path, "rb")
         try:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=writing)
         except OSError as error:
@@ -102,40 +102,40 @@ class Job:
             os.close(writing)
 
     def _forget_file(self):
-        self.said.close()
-        os.unlink(self.said_path)
+        self.output.close()
+        os.unlink(self.output_path)
 
     def is_running(self):
         """Reads the new output. Returns False once the program has ended; `error` then says why it failed, if it did."""
-        if self.said.closed:
+        if self.output.closed:
             return False
         ended = self.process.poll() is not None
-        self._take_lines(self.said.read())
+        self._read_lines(self.output.read())
         if ended:
-            self._take_lines(b"\n")
+            self._read_lines(b"\n")
             self._forget_file()
-            self._judge()
+            self._set_error()
         return not ended
 
-    def _take_lines(self, data):
+    def _read_lines(self, data):
         *lines, self.partial = (self.partial + data).split(b"\n")
         for line in lines:
-            self._take(line.decode("utf-8", "replace").strip())
+            self._read_line(line.decode("utf-8", "replace").strip())
 
-    def _take(self, line):
-        done, told = PASS_LINE.match(line), TOLD_LINE.match(line)
+    def _read_line(self, line):
+        done, message = PASS_LINE.match(line), MESSAGE_LINE.match(line)
         if done:
             order = list(PASSES)
             self.passed = max(self.passed, order.index(done[1]) + 1 if done[1] in PASSES else 0)
             self.doing = order[self.passed] if self.passed < len(order) else ""
-        elif told and told[1] == "warning":
-            self.warnings.append(told[2])
-        elif told:
-            self.error = told[2]
+        elif message and message[1] == "warning":
+            self.warnings.append(message[2])
+        elif message:
+            self.error = message[2]
         if line:
             self.last = line
 
-    def _judge(self):
+    def _set_error(self):
         code = self.process.returncode
         if self.cancelled:
             self.error = f"{self.name}: cancelled"
