@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 #include <utility>
 
 #include "image_format.h"
 #include "pack_checks_text.h"
 #include "pack_codec.h"
 #include "pack_file.h"
-#include "parallel.h"
 
 namespace chandelier::pack {
 namespace {
@@ -36,6 +36,15 @@ bool lie_one_after_another(const View& view) {
   return true;
 }
 
+std::unique_ptr<std::byte[]> room_for(const View& view, uint32_t image) {
+  const uint64_t bytes = view.images[image].size_bytes;
+  try {
+    return std::make_unique_for_overwrite<std::byte[]>(bytes);
+  } catch (const std::bad_alloc&) {
+    fail(view, image, ": not enough memory to decode it (" + text(bytes) + " bytes)");
+  }
+}
+
 }  // namespace
 
 std::string half_float_fault(std::span<const std::byte> texels) {
@@ -58,7 +67,7 @@ std::vector<Texels> texels_of(const View& view, uint32_t first, uint32_t count, 
       texels.emplace_back(stored_of(view, image));
       continue;
     }
-    auto decoded = std::make_unique_for_overwrite<std::byte[]>(image.size_bytes);
+    std::unique_ptr<std::byte[]> decoded = room_for(view, i);
     coded.push_back({Codec::zstd, 1, stored_of(view, image), {decoded.get(), image.size_bytes}});
     number.push_back(i);
     texels.emplace_back(std::move(decoded), image.size_bytes);
@@ -74,11 +83,11 @@ std::vector<Texels> texels_of(const View& view, uint32_t first, uint32_t count, 
 }
 
 Texels texels_of(const View& view, uint32_t image) {
-  return std::move(texels_of(view, image, 1, 1).front());
+  return std::move(texels_of(view, image, 1).front());
 }
 
 void check_images(const View& view, size_t most_threads) {
-  parallel_for(view.images.size(), most_threads, [&](size_t i) { texels_of(view, static_cast<uint32_t>(i)); });
+  for (uint32_t i = 0; i < view.images.size(); ++i) texels_of(view, i, 1, most_threads);  // one at a time in memory
 }
 
 EncodedImages encode_images(const View& view, size_t most_threads) {

@@ -33,7 +33,7 @@ std::vector<Texels> texels_of(const View& view, uint32_t first, uint32_t count, 
 /// Of one image.
 Texels texels_of(const View& view, uint32_t image);
 
-/// Decodes each image, and keeps none. Throws Error.
+/// Decodes one image after the other, and keeps none. Throws Error.
 void check_images(const View& view, size_t most_threads = 0);
 
 /// ": half float 3 is negative or not finite (31744)", or an empty string.

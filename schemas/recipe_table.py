@@ -84,7 +84,7 @@ class Stage(Choice):
         self.constant = self.member.upper()
         self.question, self.folder, self.code = element.get("question"), element.get("folder"), element.get("code")
         self.functions = [Function(text, self.name) for text in (element.get("functions") or "").split(";") if text]
-        self.has_state = element.get("state") == "yes"
+        self.has_state, self.is_ordered = element.get("state") == "yes", element.get("ordered") == "yes"
         if (self.code is not None) != (self.folder is not None) or self.code not in (None, "compute", "glsl"):
             raise SchemaError(f"{self.name}: code is 'compute' or 'glsl' and stands with a folder ({self.code})")
         if (self.code == "glsl") != bool(self.functions):

@@ -10,7 +10,7 @@ ATTRIBUTES = {
     "record": {"name", "gpu"},
     "field": {"name", "type", "count", "unit", "min", "max", "enum", "index", "optional", "run", "length"},
     "section": {"kind", "name", "record", "type", "same_count", "min_count", "max_count", "always_raw"},
-    "stage": {"name", "question", "default", "folder", "code", "functions", "state"},
+    "stage": {"name", "question", "default", "folder", "code", "functions", "state", "ordered"},
     "answer": {"name", "identifier", "on", "order"},
     "setting": {"name", "option", "placeholder", "type", "enum", "unit", "scale", "default", "least", "most", "optional"},
 }

@@ -86,7 +86,7 @@ FramePlan plan_frame(const World& world, const RenderSettings& settings, const G
   size_maps(plan.recipe, plan.list);
   if (plan.recipe.filter != Filter::rays)
     plan.views = project_lights(plan.list, settings.camera, aspect, world.bounds());
-  if (plan.recipe.deliver == Deliver::textures)
+  if (has_textures(plan.recipe.deliver))
     place_visibility_rects(plan.list, settings.camera, settings.width, settings.height);
   plan.groups = plan_groups(plan.list, limits);
   plan.view = view_constants(settings, aspect);

@@ -9,6 +9,7 @@
 
 #include "scene/world_changes.h"
 #include "shading/g_buffer.h"
+#include "shadows/deliver/visibility_textures.h"
 
 namespace chandelier {
 namespace {
@@ -40,6 +41,10 @@ void wait_for_frame_before(gpu::Commands cmd) {
 
 }  // namespace
 
+bool keeps_maps(const RenderSettings& settings, const FramePlan& plan) {
+  return settings.keep_shadow_maps && plan.groups.size() == 1;
+}
+
 FrameRecorder::FrameRecorder(gpu::Device& on, const World& of, const RendererOptions& options)
     : device(on),
       world(of),
@@ -62,12 +67,12 @@ void FrameRecorder::make_room(const RenderSettings& settings, const FramePlan& p
   lookup.with(plan.recipe.lookup, [&](auto& answer) { answer.make_room(device, room, slot.retired); });
 }
 
-uint64_t FrameRecorder::place_maps(const RenderSettings& settings, FramePlan& plan) {
+uint64_t FrameRecorder::place_maps(bool keep, FramePlan& plan) {
   KeptMaps& maps = resources.store.maps;
   if (plan.recipe.filter == Filter::rays) return 0;
   for (const MapGroup& group : plan.groups) {
-    if (!settings.keep_shadow_maps) maps.forget();
-    maps.place(group, world, plan.list, plan.views);
+    if (!keep) maps.forget();
+    maps.place(group, world, plan.recipe.cull, plan.list, plan.views);
   }
   return static_cast<uint64_t>(std::ranges::count(plan.list.maps, 1u, &frame::ShadowMap::is_kept));
 }
@@ -174,7 +179,7 @@ void FrameRecorder::record_shadow_maps(const Recording& frame, uint32_t number) 
                           .store = resources.store,
                           .maps = std::span(plan.list.maps).subspan(group.first_map, group.map_count),
                           .cube_count = group.cube_count,
-                          .keeps = settings.keep_shadow_maps};
+                          .keeps = keeps_maps(settings, plan)};
   begin_casters(cmd, drawn);
   for (uint32_t pass = 0; pass < passes; ++pass) {
     if (pass > 0) record_append(cmd, culling, scene, input, culled, pass);
@@ -201,7 +206,7 @@ GroupInput FrameRecorder::group_input(const FramePlan& plan, const MapGroup& gro
 void FrameRecorder::record_light(const Recording& frame, const MapGroup& group) {
   const auto& [cmd, slot, settings, plan] = frame;
   GroupInput input = group_input(plan, group, resources.visibility.bytes);
-  if (plan.recipe.deliver == Deliver::textures && plan.recipe.filter != Filter::rays) {
+  if (has_textures(plan.recipe.deliver) && plan.recipe.filter != Filter::rays) {
     const Timed timed(frame, "deliver");
     input.light_count = group.light_count;
     record_visibility(cmd, device, group_pipelines, plan.recipe, input, resources.store, resources.targets);
@@ -223,6 +228,7 @@ void FrameRecorder::record_end(const Recording& frame) {
     record_tone_map(cmd, tone, settings.exposure_ev, resources.luminance_sums, resources.targets);
     if (has_samples) record_resolve_shown(cmd, edges(frame), resources.luminance_sums);
   }
+  resources.targets.is_drawn = true;
   gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
   const VkBufferCopy counts{.size = (plan.groups.size() + 1) * sizeof(frame::CullCounters)};

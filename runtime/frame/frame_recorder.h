@@ -28,6 +28,9 @@ struct SamplePipelines {
   EdgePipelines edges;
 };
 
+/// Maps are kept where all of them fit the store together: else each group takes the places of the one before.
+bool keeps_maps(const RenderSettings& settings, const FramePlan& plan);
+
 /// For one renderer. Its stages wait for each other by barriers, and its frames for the frame before.
 struct FrameRecorder {
   FrameRecorder(gpu::Device& on, const World& of, const RendererOptions& options);
@@ -35,7 +38,7 @@ struct FrameRecorder {
   /// Makes what the frame needs. The frame that used the slot has finished.
   void make_room(const RenderSettings& settings, const FramePlan& plan, FrameSlot& slot);
   /// Finds places in the store for the plan's maps, and returns how many are there already.
-  uint64_t place_maps(const RenderSettings& settings, FramePlan& plan);
+  uint64_t place_maps(bool keep, FramePlan& plan);
 
   /// The whole frame, without filter rays. Throws gpu::Error: then the next frame does again what was lost.
   void record(const Recording& frame);

@@ -24,7 +24,7 @@ void check_settings(const gpu::Device& device, const RenderSettings& settings) {
   if (const auto reason = refusal(settings.recipe)) throw std::invalid_argument(*reason);
   if (settings.width == 0 || settings.height == 0) throw std::invalid_argument("a picture needs a size");
   const uint32_t largest = device.limits.maxImageDimension2D;
-  if (!can_draw_samples(device, settings.samples))
+  if (settings.samples != 1 && !can_draw_samples(device, settings.samples))
     throw gpu::Error(std::to_string(settings.samples) + " samples in a pixel: this device cannot draw them");
   if (settings.width > largest || settings.height > largest)
     throw gpu::Error("a picture of " + std::to_string(settings.width) + " x " + std::to_string(settings.height) +
@@ -40,7 +40,6 @@ struct Renderer::Impl {
   FrameRecorder recorder;
   std::vector<FrameSlot> slots;
   Planned planned;
-  bool is_drawn = false;
 
   Impl(gpu::Device& on, const World& of, const RendererOptions& options)
       : device(on), world(of), surroundings(of), recorder(on, of, options) {
@@ -80,8 +79,10 @@ void Renderer::Impl::prepare(FrameSlot& slot, const RenderSettings& settings) {
   slot.reset();
   recorder.make_room(settings, planned.plan, slot);
   slot.stats = planned.stats;
-  const bool has_places = std::exchange(planned.is_placed, true) && !settings.keep_shadow_maps;
-  if (!has_places) slot.stats.shadow_maps_kept = recorder.place_maps(settings, planned.plan);
+  const bool keeps = keeps_maps(settings, planned.plan);
+  if (keeps || !planned.is_placed)
+    recorder.undo_if_it_throws([&] { slot.stats.shadow_maps_kept = recorder.place_maps(keeps, planned.plan); });
+  planned.is_placed = true;
   slot.stats.sample_bytes =
       recorder.resources.edges.size_bytes + sample_target_bytes(settings.width, settings.height, settings.samples);
   slot.groups = planned.plan.groups.size();
@@ -95,8 +96,9 @@ FrameStats Renderer::Impl::draw(FrameSlot& slot, const RenderSettings& settings)
   if (planned.plan.recipe.filter == Filter::rays)
     draw_by_rays(recorder, slot, settings, planned.plan);
   else
-    gpu::run_once(device, [&](gpu::Commands cmd) { recorder.record({cmd, slot, settings, planned.plan}); });
-  is_drawn = true;
+    recorder.undo_if_it_throws([&] {
+      gpu::run_once(device, [&](gpu::Commands cmd) { recorder.record({cmd, slot, settings, planned.plan}); });
+    });
   FrameStats stats = read_stats(slot);
   stats.frame_ms = ms_since(start);
   slot.reset();
@@ -104,7 +106,7 @@ FrameStats Renderer::Impl::draw(FrameSlot& slot, const RenderSettings& settings)
 }
 
 void Renderer::Impl::check_drawn() const {
-  if (!is_drawn) throw std::logic_error("no frame has been drawn yet");
+  if (!recorder.resources.targets.is_drawn) throw std::logic_error("no frame has been drawn yet");
 }
 
 const FrameStats& Renderer::Impl::read_stats(FrameSlot& slot) {
@@ -156,7 +158,6 @@ const FrameStats& Renderer::record(VkCommandBuffer cmd, uint32_t slot, const Ren
   const gpu::Commands commands(impl_->device, cmd);
   impl_->prepare(frame_slot, settings);
   impl_->recorder.record({commands, frame_slot, settings, impl_->planned.plan});
-  impl_->is_drawn = true;
   if (target.image) impl_->recorder.record_target(commands, target);
   frame_slot.record_ms = ms_since(start);
   return frame_slot.stats;

@@ -76,12 +76,12 @@ class Adapted {
 
 }  // namespace
 
-ErrorDriven::ErrorDriven(const World& world, const rays::PackRays& rays)
+ErrorDriven::ErrorDriven(const World& world, const rays::PackRays& rays, MeanMaterialsOf materials_of)
     : world_(world),
       rays_(rays),
       searched_(rays),
       instances_(world.instances_version()),
-      scene_(world.pack(), searched_),
+      scene_(world.pack(), searched_, materials_of),
       search_(scene_) {}
 
 std::vector<MapMember> ErrorDriven::select(const ErrorTask& task) {

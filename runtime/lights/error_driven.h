@@ -24,7 +24,7 @@ class ErrorDriven {
  public:
   /// `world` and `rays` must outlive this. `rays` must stand as the world does whenever something is asked; searches
   /// read a copy.
-  ErrorDriven(const World& world, const rays::PackRays& rays);
+  ErrorDriven(const World& world, const rays::PackRays& rays, MeanMaterialsOf materials_of);
   ErrorDriven(const ErrorDriven&) = delete;
   ~ErrorDriven() { stop_.request_stop(); }  // and waits: running_ is the first to go
 

@@ -21,8 +21,8 @@ namespace chandelier {
 
 /// What points are taken from; made once for a pack. The rays must outlive it.
 struct SampledScene {
-  SampledScene(const pack::View& pack, const rays::PackRays& through)
-      : rays(through), materials(mean_materials(pack)) {}
+  SampledScene(const pack::View& pack, const rays::PackRays& through, MeanMaterialsOf materials_of = mean_materials)
+      : rays(through), materials(materials_of(pack)) {}
 
   const rays::PackRays& rays;
   std::vector<MeanMaterial> materials;

@@ -9,7 +9,6 @@
 
 #include "image_format.h"
 #include "pack_images.h"
-#include "parallel.h"
 
 namespace chandelier {
 namespace {
@@ -96,9 +95,8 @@ std::vector<glm::vec3> mean_texels(const pack::View& pack) {
     for (const uint32_t texture : {m.base_color_texture, m.metallic_roughness_texture, m.emissive_texture})
       if (texture != pack::none) is_needed[pack.textures[texture].image] = 1;
   std::vector<glm::vec3> means(pack.images.size());
-  pack::parallel_for(means.size(), 0, [&](size_t i) {
-    if (is_needed[i]) means[i] = mean_texel(pack, static_cast<uint32_t>(i));
-  });
+  for (uint32_t i = 0; i < means.size(); ++i)
+    if (is_needed[i]) means[i] = mean_texel(pack, i);  // one at a time in memory; each is decoded in threads
   return means;
 }
 
@@ -113,7 +111,7 @@ std::vector<MeanMaterial> mean_materials(const pack::View& pack) {
   for (const pack::Material& m : pack.materials) {
     const glm::vec3 metal_rough = mean(m.metallic_roughness_texture);
     const glm::vec3 base = glm::vec3(m.base_color_factor) * mean(m.base_color_texture);
-    means.push_back({.base_color = m.unlit ? base : glm::min(base, 1.0f),  // as shading/g_buffer.frag has it
+    means.push_back({.base_color = m.unlit ? base : glm::min(base, 1.0f),  // as shading/g_buffer.glsl has it
                      .emissive = m.emissive * mean(m.emissive_texture),
                      .metallic = m.metallic_factor * metal_rough.b,
                      .roughness = m.roughness_factor * metal_rough.g,

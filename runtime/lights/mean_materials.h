@@ -20,6 +20,8 @@ struct MeanMaterial {
 
 /// One per material of the pack. A texture's mean is that of its smallest level.
 std::vector<MeanMaterial> mean_materials(const pack::View& pack);
+/// That function, for code that must link without it: the preview's library has no decoder of images.
+using MeanMaterialsOf = std::vector<MeanMaterial> (*)(const pack::View&);
 
 /// shading/brdf.glsl:ggx on the CPU. Directions of unit length, all on the surface's lit side.
 glm::vec3 reflected(const MeanMaterial& material, const glm::vec3& normal, const glm::vec3& to_eye,

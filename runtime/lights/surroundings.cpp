@@ -21,7 +21,7 @@ lights::Walls& Surroundings::walls() {
 
 ErrorDriven& Surroundings::by_error() {
   const rays::PackRays& through = rays();
-  if (!by_error_) by_error_.emplace(world_, through);
+  if (!by_error_) by_error_.emplace(world_, through, materials_of_);
   return *by_error_;
 }
 

@@ -13,7 +13,8 @@ namespace chandelier {
 class Surroundings {
  public:
   /// `world` must outlive this.
-  explicit Surroundings(const World& world) : world_(world) {}
+  explicit Surroundings(const World& world, MeanMaterialsOf materials_of = mean_materials)
+      : world_(world), materials_of_(materials_of) {}
   Surroundings(const Surroundings&) = delete;
 
   lights::Walls& walls();
@@ -26,6 +27,7 @@ class Surroundings {
   const rays::PackRays& rays();
 
   const World& world_;
+  MeanMaterialsOf materials_of_;
   std::optional<rays::PackRays> rays_;
   Version instances_ = 0;  // that rays_ stand as
   std::optional<lights::Walls> walls_;

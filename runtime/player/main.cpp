@@ -45,7 +45,7 @@ using ValidationLog = std::shared_ptr<const std::vector<std::string>>;
 
 ValidationLog draw(Options asked, std::unique_ptr<Scene> scene) {
   const auto choose_samples = [&](const gpu::Device& device) {
-    if (!asked.samples) asked.samples = scene->options.samples = default_samples(device);
+    if (!asked.samples) asked.samples = scene->options.samples = default_samples(device, asked.width, asked.height);
   };
   gpu::DeviceOptions device_options;
   device_options.device = asked.device;

@@ -163,6 +163,9 @@ void read_comparison(const Typed& typed, Options& options) {
     throw UsageError("--compare: cannot be used with --stats; --report DIR gets comparison.json");
   if (!typed.preset.empty()) throw UsageError("--compare: cannot be used with --preset; A and B are presets");
   if (typed.predict) throw UsageError("--compare: cannot be used with --predict");
+  if (typed.keep_shadow_maps)
+    throw UsageError(
+        "--compare: cannot be used with --keep-shadow-maps, which would let one side use the other's maps");
   for (std::size_t i = 0; i < typed.answers.size(); ++i)
     if (stage_choices()[i].stage == "select" && !typed.answers[i].empty())
       throw UsageError("--compare: cannot be used with --select, which would make both sides select alike");

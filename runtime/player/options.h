@@ -70,7 +70,7 @@ RenderSettings render_settings(const Options& options, const Recipe& recipe, con
                                const VisibilitySource& visibility);
 
 /// Samples in a pixel where none are asked for.
-uint32_t default_samples(const gpu::Device& device);
+uint32_t default_samples(const gpu::Device& device, uint32_t width, uint32_t height);
 
 /// Options of the pack's renderer. A long upload shows its progress on a terminal.
 RendererOptions renderer_options(const Options& options);

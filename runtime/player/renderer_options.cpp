@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "player/options.h"
-#include "shading/targets.h"
+#include "shading/edges.h"
 
 namespace chandelier::player {
 namespace {
@@ -35,9 +35,11 @@ class UploadLine {
 
 }  // namespace
 
-uint32_t default_samples(const gpu::Device& device) {
+uint32_t default_samples(const gpu::Device& device, uint32_t width, uint32_t height) {
   constexpr uint32_t usual = 4;
-  return !device.is_software && can_draw_samples(device, usual) ? usual : 1;  // shading/MEASUREMENTS.md
+  const bool is_chosen = !device.is_software && can_draw_samples(device, usual) &&  // shading/MEASUREMENTS.md
+                         has_room_for_edges(device, width, height, usual);
+  return is_chosen ? usual : 1;
 }
 
 RendererOptions renderer_options(const Options& options) {

@@ -102,10 +102,9 @@ void declare_output(CLI::App& app, Typed& typed) {
   app.add_option("--compare", typed.compare, "Draw with two presets and report their difference")
       ->type_name("A,B")
       ->group("Output");
-  app.add_flag(
-         "--keep-shadow-maps", typed.keep_shadow_maps,
-         "Draw no shadow map again whose depths are there from the frame before, with --frames and --path; counters "
-         "are then those of what was drawn. Windows always do")
+  app.add_flag("--keep-shadow-maps", typed.keep_shadow_maps,
+               "With --frames and --path, do not draw a shadow map again that an earlier frame drew and that has not "
+               "changed. Triangles and draws are then those of the others. Windows always do so")
       ->group("Output");
   app.add_flag("--predict", typed.predict, "Print what a frame will cost, without drawing it or opening a device")
       ->group("Output");

@@ -85,6 +85,10 @@ EdgePipelines make_edge_pipelines(const gpu::Device& device, uint32_t samples) {
           gpu::make_texel_sampler(device)};
 }
 
+bool has_room_for_edges(const gpu::Device& device, uint32_t width, uint32_t height, uint32_t samples) {
+  return uint64_t{width} * height * samples * sizeof(frame::EdgeSurface) <= device.limits.maxStorageBufferRange;
+}
+
 EdgeLists make_edge_lists(const gpu::Device& device, uint32_t width, uint32_t height, uint32_t samples) {
   EdgeLists lists;
   if (samples == 1) return lists;

@@ -30,7 +30,9 @@ struct EdgeLists {
   uint32_t tiles_x = 0;
   uint64_t size_bytes = 0;
 };
-/// Throws gpu::Error where the device cannot bind so much.
+/// Can the device bind the lists of such a picture?
+bool has_room_for_edges(const gpu::Device& device, uint32_t width, uint32_t height, uint32_t samples);
+/// Throws gpu::Error where it cannot.
 EdgeLists make_edge_lists(const gpu::Device& device, uint32_t width, uint32_t height, uint32_t samples);
 
 /// Edges as the passes below take them.

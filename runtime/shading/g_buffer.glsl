@@ -43,6 +43,8 @@ int covered_samples(float alpha, float cutoff) {
 }
 #endif
 
+const float LEAST_DEPTH = 1e-30;  // of what is not the background
+
 void main() {
   Material m = materials[material_number];
   vec4 base = m.base_color_factor * color * texture(base_color_map, uv[0]);
@@ -65,7 +67,9 @@ void main() {
   // Last: derivatives are undefined beside a pixel that has ended.
 #ifdef MULTISAMPLED
   gl_SampleMask[0] = m.alpha_mode == ALPHA_MODE_MASK ? covered_samples(base.a, m.alpha_cutoff) : -1;
-  middle_depth = gl_FragCoord.z;
+  // Beyond the horizon of a plane that is seen edge on, its depth in the middle of the pixel is below 0, which stands for the
+  // background.
+  middle_depth = max(gl_FragCoord.z, LEAST_DEPTH);
 #else
   if (m.alpha_mode == ALPHA_MODE_MASK && base.a < m.alpha_cutoff) discard;
 #endif

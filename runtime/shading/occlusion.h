@@ -12,9 +12,10 @@ constexpr float alpha_of_occlusion(float occlusion) {
   return 1.0f + occlusion;
 }
 
-/// Of an alpha that is not unlit. To within 2^-24, since alpha lies between 1 and 2.
+/// Of an alpha that is not unlit. To within 2^-24, since alpha lies between 1 and 2. In a pixel of which a part shows
+/// unlit surfaces alpha is below 1, the part that does not (resolve_radiance.comp): 0.
 constexpr float occlusion_of_alpha(float alpha) {
-  return alpha - 1.0f;
+  return alpha > 1.0f ? alpha - 1.0f : 0.0f;
 }
 
 constexpr bool is_unlit(float alpha) {

@@ -7,13 +7,14 @@
 
 #include "shaders/shade_comp.h"
 #include "shaders/shade_edges_comp.h"
+#include "shadows/deliver/visibility_textures.h"
 
 namespace chandelier {
 
 void record_shade(gpu::Commands cmd, const gpu::Device& device, GroupPipelines& pipelines, const Recipe& recipe,
                   const GroupInput& input, const CubeArray& store, const Targets& targets) {
   const gpu::Pipeline& pipeline = group_pipeline(device, pipelines, shade_comp, recipe, input);
-  const gpu::Buffer& visibility = recipe.deliver == Deliver::textures ? input.visibility : input.lights;
+  const gpu::Buffer& visibility = has_textures(recipe.deliver) ? input.visibility : input.lights;
   gpu::image_barrier(cmd, targets.radiance, use::storage, use::storage);
   gpu::bind(cmd, pipeline, group_resources(pipelines, input, visibility, store, targets));
   gpu::push_constants(cmd, pipeline, group_constants(input));

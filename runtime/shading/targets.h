@@ -15,10 +15,11 @@ struct SampleTargets {
 };
 
 struct Targets {
-  gpu::Image surface;   // shading/surface.glsl
-  gpu::Image depth;     // reversed: 0 is the background, and pixels whose samples show several surfaces
-  gpu::Image radiance;  // linear; alpha: shading/occlusion.h
-  gpu::Image shown;     // sRGB values
+  gpu::Image surface;     // shading/surface.glsl
+  gpu::Image depth;       // reversed: 0 is the background, and pixels whose samples show several surfaces
+  gpu::Image radiance;    // linear; alpha: shading/occlusion.h
+  gpu::Image shown;       // sRGB values
+  bool is_drawn = false;  // holds a frame, or will when what was recorded has finished
   uint32_t width = 0;
   uint32_t height = 0;
   uint32_t samples = 1;

@@ -52,6 +52,8 @@ TEST_F(AmbientTest, ShaderAndCpuAgree) {
       gpu::bind(cmd, pipeline,
                 {{"View", gpu::storage(view)}, {"Normals", gpu::storage(asked)}, {"Answers", gpu::storage(answers)}});
       gpu::dispatch(cmd, device(), pipeline, normals.size());
+      gpu::memory_barrier(cmd, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
     });
     for (size_t i = 0; i < normals.size(); ++i) {
       glm::vec3 found;

@@ -148,7 +148,7 @@ class CubeLookupTest : public GpuTest {
     EXPECT_EQ(groups.size(), 1u);
     const auto view_count = static_cast<uint32_t>(maps.views.size());
     maps.store = make_cube_array(device(), layer_size_px, groups[0].cube_count);
-    maps.store.maps.place(groups[0], world, maps.list, maps.views);
+    maps.store.maps.place(groups[0], world, Cull::light_frustum, maps.list, maps.views);
 
     const CullPipelines cull = make_cull_pipelines(device(), Cull::light_frustum, false);
     const CasterPipelines casters = make_caster_pipelines(device(), scene);
@@ -260,7 +260,14 @@ TEST_F(CubeLookupTest, AgreesWithRaysWhereMapsHaveManySizes) {
 // border of a face, which are held at it.
 TEST_F(CubeLookupTest, SquaresOfLayersAreReadAsWholeOnes) {
   Random random(4);
-  const pack::File pack = cluttered_room(random).open();
+  Scene scene = cluttered_room(random);
+  pack::Material cut = plain_material(glm::vec3(0.8f));
+  cut.base_color_texture = scene.add_texture(2, 2, {0xFFFFFFFFu, 0x00FFFFFFu, 0x00FFFFFFu, 0xFFFFFFFFu});
+  cut.alpha_mode = pack::AlphaMode::mask;
+  const uint32_t masked = scene.add_material(cut);
+  for (int i = 0; i < 40; ++i)
+    scene.add(quad(uniform3(random, -room_m, room_m), unit_vector(random), unit_vector(random)), masked);
+  const pack::File pack = scene.open();
   const Maps whole = draw_maps(pack, 128, {128}), parts = draw_maps(pack, 512, {128});
   ASSERT_LT(parts.store.cube_count, whole.store.cube_count);
   auto questions = ask(random, world_triangles(pack.view()), whole.list.maps);

@@ -95,7 +95,7 @@ class KeptMapsTest : public testing::Test {
 
   Frame placed(KeptMaps& maps, const std::vector<std::pair<LightId, uint32_t>>& wanted) {
     Frame frame(wanted);
-    maps.place(frame.group, world, frame.list, frame.views);
+    maps.place(frame.group, world, Cull::light_frustum, frame.list, frame.views);
     for (const frame::ShadowMap& map : frame.list.maps)
       for (uint32_t v = 0; v < 2; ++v) {
         const frame::ShadowView& view = frame.views[map.first_view + v];
@@ -129,7 +129,7 @@ TEST_F(KeptMapsTest, AreDrawnAgainWhenTheirContentsChange) {
   EXPECT_EQ(placed(maps, {{0, 8}, {1, 16}}).kept(), (Kept{0, 1})) << "another size";
   Frame turned(wanted);
   turned.views[3].range_m = 5.0f;
-  maps.place(turned.group, world, turned.list, turned.views);
+  maps.place(turned.group, world, Cull::light_frustum, turned.list, turned.views);
   EXPECT_EQ(turned.kept(), (Kept{1, 0})) << "another range";
   maps.forget();
   EXPECT_EQ(placed(maps, wanted).kept(), (Kept{0, 0}));

@@ -100,8 +100,12 @@ CullPipelines make_cull_pipelines(const gpu::Device& device, Cull answer, bool k
     return gpu::make_compute_pipeline(device, shader,
                                       {{"cull_step", static_cast<uint32_t>(number)}, {"keep_order", keep_order}});
   };
-  return {gpu::make_compute_pipeline(device, block_boxes_comp), step(Step::find), step(Step::count),
-          gpu::make_compute_pipeline(device, plan_draws_comp, {{"keep_order", keep_order}}), step(Step::append), keep_order};
+  return {gpu::make_compute_pipeline(device, block_boxes_comp),
+          step(Step::find),
+          step(Step::count),
+          gpu::make_compute_pipeline(device, plan_draws_comp, {{"keep_order", keep_order}}),
+          step(Step::append),
+          keep_order};
 }
 
 CullState make_cull_state(const gpu::Device& device, gpu::Uploader& uploader, const DrawLists& lists) {

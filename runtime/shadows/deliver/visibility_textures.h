@@ -4,8 +4,20 @@
 #pragma once
 
 #include "lights/light_list.h"
+#include "recipe_schema.h"
 
 namespace chandelier {
+
+/// Does an answer keep visibility in textures? Throws std::invalid_argument where it is not known.
+inline bool has_textures(Deliver answer) {
+  switch (answer) {
+    case Deliver::inlined:
+      return false;
+    case Deliver::textures:
+      return true;
+  }
+  refuse_answer(answer);
+}
 
 /// Pixels [x, x + width) by [y, y + height) of a picture.
 struct PixelRect {

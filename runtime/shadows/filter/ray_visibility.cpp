@@ -93,6 +93,9 @@ std::vector<SurfacePoint> read_edge_points(const gpu::Device& device, const Edge
   frame::EdgeCounters found;
   std::memcpy(&found, counters.mapped, sizeof found);
   if (found.surfaces == 0) return {};
+  if (uint64_t{found.surfaces} * sizeof(frame::EdgePoint) > device.limits.maxStorageBufferRange)
+    throw gpu::Error("the surfaces of edge pixels are too many for rays on this device (" +
+                     std::to_string(found.surfaces) + "); use fewer samples or a smaller picture");
   const gpu::Buffer points = gpu::make_buffer(device, found.surfaces * sizeof(frame::EdgePoint),
                                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::readback);
   gpu::run_once(device, [&](gpu::Commands cmd) {

@@ -8,12 +8,13 @@
 namespace chandelier {
 namespace {
 
-MapContents contents_of(const frame::ShadowMap& map, const World& world, const LightList& list,
+MapContents contents_of(const frame::ShadowMap& map, const World& world, Cull cull, const LightList& list,
                         std::span<const frame::ShadowView> views) {
   MapContents contents;
   contents.center = list.center[map.first_light];
   contents.light_version = world.light_version(contents.center);
   contents.instances_version = world.instances_version();
+  contents.cull = cull;
   std::ranges::copy(views.subspan(map.first_view, map.view_count), contents.views.begin());
   for (frame::ShadowView& view : contents.views) {
     view.layer %= 6;
@@ -24,7 +25,7 @@ MapContents contents_of(const frame::ShadowMap& map, const World& world, const L
 
 // Records hold four-byte numbers without gaps.
 bool same(const MapContents& a, const MapContents& b) {
-  return a.light_version == b.light_version && a.instances_version == b.instances_version &&
+  return a.light_version == b.light_version && a.instances_version == b.instances_version && a.cull == b.cull &&
          std::memcmp(a.views.data(), b.views.data(), sizeof a.views) == 0;
 }
 
@@ -72,14 +73,14 @@ bool KeptMaps::take_others(std::span<const frame::ShadowMap> maps) {
   return true;
 }
 
-void KeptMaps::place(const MapGroup& group, const World& world, LightList& list,
+void KeptMaps::place(const MapGroup& group, const World& world, Cull cull, LightList& list,
                      std::vector<frame::ShadowView>& views) {
   ++now_;
   const auto maps = std::span(list.maps).subspan(group.first_map, group.map_count);
   contents_.clear();
   places_.clear();
   for (const frame::ShadowMap& map : maps) {
-    contents_.push_back(contents_of(map, world, list, views));
+    contents_.push_back(contents_of(map, world, cull, list, views));
     places_.push_back(find(contents_.back()));
   }
   for (size_t i = 0; i < maps.size(); ++i) maps[i].is_kept = places_[i].has_value();

@@ -20,6 +20,7 @@ struct MapContents {
   LightId center = 0;         // whose place it is drawn from
   Version light_version = 0;  // of that light
   Version instances_version = 0;
+  Cull cull{};                               // what is drawn beyond a light's range depends on it
   std::array<frame::ShadowView, 6> views{};  // as projected: `layer` is a face number, the place is 0
 };
 
@@ -31,7 +32,8 @@ class KeptMaps {
   /// Gives every map of a group, and its views, a place. A map that lies in the pool with the same contents stays where
   /// it is and has `is_kept`; the others take what is free, or what was used longest ago. The group's maps must fit
   /// (plan_groups()). Whoever calls draws those that are not kept before the next group is placed.
-  void place(const MapGroup& group, const World& world, LightList& list, std::vector<frame::ShadowView>& views);
+  void place(const MapGroup& group, const World& world, Cull cull, LightList& list,
+             std::vector<frame::ShadowView>& views);
   /// Nothing that lies in the pool is what it was.
   void forget();
 
