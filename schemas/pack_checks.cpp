@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <iterator>
 
@@ -77,7 +78,7 @@ std::string fault(const Image& image) {
     if (image.stored_bytes == image.size_bytes) return {};
     return ".stored_bytes: " + text(image.stored_bytes) + " of a raw image of " + text(image.size_bytes) + " bytes";
   }
-  if (std::string line = coded_size_fault(Codec::zstd, 1, image.stored_bytes, image.size_bytes); !line.empty()) {
+  if (image.stored_bytes == 0 || are_too_many(image.size_bytes, 1, image.stored_bytes)) {
     return ".size_bytes: " + text(image.size_bytes) + " are too many for the stored " + text(image.stored_bytes);
   }
   return {};
@@ -184,6 +185,16 @@ std::string check(const View& view, size_t most_threads) {
   }
   const auto first = std::ranges::find_if(faults, [](const std::string& line) { return !line.empty(); });
   return first == faults.end() ? std::string() : *first;
+}
+
+std::string half_float_fault(std::span<const std::byte> texels) {
+  for (size_t i = 0; i + 1 < texels.size(); i += 2) {
+    uint16_t bits = 0;
+    std::memcpy(&bits, &texels[i], sizeof(bits));
+    if (is_half_texel(bits)) continue;
+    return ": half float " + text(uint64_t{i / 2}) + " is negative or not finite (" + text(uint64_t{bits}) + ")";
+  }
+  return {};
 }
 
 }  // namespace chandelier::pack

@@ -239,7 +239,7 @@ std::string coded_size_fault(Codec codec, uint32_t stride_bytes, uint64_t stored
                     (codec == Codec::triangles && stride_bytes == word && count % 3 == 0);
   if (!fits) return "codec: " + std::string(name_of(codec)) + " is not for such records";
   if (count == 0 || stored_bytes == 0) return "count: " + std::to_string(count) + " records of no bytes";
-  if (count / max_decode_ratio > stored_bytes / stride_bytes + 1) {
+  if (are_too_many(count, stride_bytes, stored_bytes)) {
     return "count: " + std::to_string(count) + " records of " + std::to_string(stride_bytes) +
            " bytes are too many for the stored " + std::to_string(stored_bytes);
   }

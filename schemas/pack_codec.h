@@ -33,6 +33,11 @@ struct Coded {
   std::span<std::byte> records;  ///< Its size is a multiple of the stride; aligned for the records.
 };
 
+/// Are `count` records more than so many stored bytes can hold?
+constexpr bool are_too_many(uint64_t count, uint32_t stride_bytes, uint64_t stored_bytes) {
+  return count / max_decode_ratio > stored_bytes / stride_bytes + 1;
+}
+
 /// The fault of the codec or of the sizes, which are not trusted; an empty string if decoding can be tried. Refuses
 /// records of more than about max_decode_ratio times the stored bytes, so a file's size limits what it can ask for: 10
 /// MB may ask for 10 GB, as valid sections of zeros do.

@@ -47,16 +47,6 @@ std::unique_ptr<std::byte[]> room_for(const View& view, uint32_t image) {
 
 }  // namespace
 
-std::string half_float_fault(std::span<const std::byte> texels) {
-  for (size_t i = 0; i + 1 < texels.size(); i += 2) {
-    uint16_t bits = 0;
-    std::memcpy(&bits, &texels[i], sizeof(bits));
-    if (is_half_texel(bits)) continue;
-    return ": half float " + text(uint64_t{i / 2}) + " is negative or not finite (" + text(uint64_t{bits}) + ")";
-  }
-  return {};
-}
-
 std::vector<Texels> texels_of(const View& view, uint32_t first, uint32_t count, size_t most_threads) {
   std::vector<Texels> texels;
   std::vector<Coded> coded;

@@ -17,7 +17,8 @@ struct Prediction {
 class Predictor {
  public:
   /// `world` must outlive it.
-  explicit Predictor(const World& world) : world_(world), surroundings_(world) {}
+  explicit Predictor(const World& world, MeanMaterialsOf materials_of = mean_materials)
+      : world_(world), surroundings_(world, materials_of) {}
   explicit Predictor(World&& world) = delete;
 
   /// Lights, shadow maps and views alone: cheap enough to try many settings. The counters of draws and triangles are 0.

@@ -11,6 +11,11 @@
 namespace chandelier::preview {
 namespace {
 
+// The preview offers no selection by error, which alone would read them.
+std::vector<MeanMaterial> no_materials(const pack::View&) {
+  return {};
+}
+
 // A world of lights alone.
 World world_of(const Lights& lights) {
   pack::View pack;
@@ -26,7 +31,7 @@ struct Plans {
 };
 
 Plans plan(const World& world, const RenderSettings& settings, const Budget& budget) {
-  Predictor predictor(world);
+  Predictor predictor(world, no_materials);
   Plans plans{.wanted = predictor.plan(settings)};
   plans.over_budget = !keeps(plans.wanted.stats, budget);
   plans.budgeted = keep_least_d_init(predictor, settings, budget, plans.wanted);
