@@ -143,6 +143,25 @@ TEST_F(EdgesTest, CoverageOfAHalfPlane) {
   }
 }
 
+// In the middle of a pixel that a floor's horizon runs through, the floor's plane is behind the eye.
+TEST_F(EdgesTest, AHorizonCoversPartOfItsPixels) {
+  Scene scene;
+  scene.add(level_square({0, 0, 0}, 40000), scene.add_material(plain_material(glm::vec3(0.8f))));
+  scene.lights = {directional_light({0, -1, 0}, 3)};
+  RenderSettings settings = from_front({.shade = Shade::lambert, .face_size_px = 128});
+  const float pixel = 2.0f * std::tan(0.5f * settings.camera.yfov_rad) / height;
+  for (const float below : {0.3f, 0.45f, 0.55f, 0.8f}) {  // of a pixel's row is floor
+    settings.camera = look({0, 0.3f, 0}, {0, 0.3f - below * pixel, -1}, settings.camera.yfov_rad);
+    const Picture picture = frame(scene, settings, samples).picture;
+    const float floor = radiance_at(picture, 5, height - 5).x;
+    ASSERT_GT(floor, 0.1f);
+    for (uint32_t x = 0; x < width; ++x) {
+      EXPECT_EQ(radiance_at(picture, x, height / 2 - 2).x, 0.0f);
+      EXPECT_NEAR(radiance_at(picture, x, height / 2 - 1).x / floor, below, 0.28f) << below << " at " << x;
+    }
+  }
+}
+
 TEST_F(EdgesTest, ALampInPartOfAPixelMakesThatPartWhite) {
   constexpr float lamp = 1e4f, wall = 0.1f;
   Scene scene;
