@@ -11,7 +11,7 @@
 namespace chandelier::player {
 namespace {
 
-constexpr std::size_t most_names = 8;  // on stderr; --stats has them all
+constexpr size_t most_names = 8;  // on stderr; --stats has them all
 
 std::string name_of(const pack::File& pack, const World& world, LightId light) {
   const std::string_view name = pack.text(world.lights()[light].name);
@@ -20,7 +20,7 @@ std::string name_of(const pack::File& pack, const World& world, LightId light) {
 
 std::string in_words(const std::vector<SharedMap>& shared) {
   std::string text;
-  for (std::size_t i = 0; i < shared.size() && i < most_names; ++i)
+  for (size_t i = 0; i < shared.size() && i < most_names; ++i)
     text += fmt::format("{}{} ({}'s)", i == 0 ? "" : ", ", shared[i].light, shared[i].map_of);
   if (shared.size() > most_names) text += fmt::format(", and {} more", shared.size() - most_names);
   return text;
@@ -61,7 +61,7 @@ void tell(const NamedRecipe& named, const Recipe& asked, const BudgetedPlan& pla
 std::vector<SharedMap> shared_maps(const pack::File& pack, const World& world, const LightList& list) {
   const std::vector<uint32_t> centers = centers_by_light(world, list);
   std::vector<SharedMap> shared;
-  for (std::size_t i = 0; i < list.lights.size(); ++i)
+  for (size_t i = 0; i < list.lights.size(); ++i)
     if (list.center[i] != list.light_id[i] && list.center[i] == centers[list.light_id[i]])
       shared.push_back({name_of(pack, world, list.light_id[i]), name_of(pack, world, list.center[i])});
   return shared;

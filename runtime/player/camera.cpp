@@ -67,7 +67,7 @@ std::optional<FileCamera> camera_from_numbers(std::string_view text) {
   std::array<double, 7> numbers{};
   const char* at = text.data();
   const char* const end = text.data() + text.size();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
+  for (size_t i = 0; i < numbers.size(); ++i) {
     if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
     while (at != end && (*at == ' ' || *at == '+')) ++at;
     const auto [after, error] = std::from_chars(at, end, numbers[i]);

@@ -53,7 +53,7 @@ void draw_in_turns(Renderer& renderer, const pack::File& pack, const World& worl
 }
 
 Run side_run(const Options& options, const NamedCamera& camera, const gpu::Device& device, const Side& side,
-             std::size_t index) {
+             size_t index) {
   Run run;
   run.pack = options.pack.filename().string();
   run.device = device.name;
@@ -81,9 +81,9 @@ void write_side(const std::filesystem::path& folder, const Run& run, const Pictu
 
 Differences differences(const Picture& a, const Picture& b, std::span<const float> flip) {
   if (a.width != b.width || a.height != b.height) throw std::invalid_argument("pictures of different sizes");
-  const std::size_t pixels = std::size_t{a.width} * a.height;
+  const size_t pixels = size_t{a.width} * a.height;
   Differences result;
-  for (std::size_t i = 0; i < 4 * pixels; ++i) {
+  for (size_t i = 0; i < 4 * pixels; ++i) {
     if (i % 4 == 3) continue;
     const double linear = std::abs(double{a.radiance[i]} - double{b.radiance[i]});
     const double shown = std::abs(a.shown[i] - b.shown[i]) / 255.0;
@@ -101,10 +101,10 @@ Differences differences(const Picture& a, const Picture& b, std::span<const floa
 }
 
 std::vector<float> shown_differences(const Picture& a, const Picture& b) {
-  std::vector<float> values(std::size_t{a.width} * a.height);
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  std::vector<float> values(size_t{a.width} * a.height);
+  for (size_t i = 0; i < values.size(); ++i) {
     int largest = 0;
-    for (std::size_t c = 4 * i; c < 4 * i + 3; ++c) largest = std::max(largest, std::abs(a.shown[c] - b.shown[c]));
+    for (size_t c = 4 * i; c < 4 * i + 3; ++c) largest = std::max(largest, std::abs(a.shown[c] - b.shown[c]));
     values[i] = static_cast<float>(largest) / 255.0f;
   }
   return values;
@@ -112,7 +112,7 @@ std::vector<float> shown_differences(const Picture& a, const Picture& b) {
 
 float heat_scale(std::vector<float> values) {
   if (values.empty()) return 1.0f / 255.0f;
-  const auto rank = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * 999 / 1000);
+  const auto rank = values.begin() + static_cast<ptrdiff_t>((values.size() - 1) * 999 / 1000);
   std::nth_element(values.begin(), rank, values.end());
   if (*rank > 0.0f) return *rank;
   const float largest = *std::max_element(rank, values.end());

@@ -85,8 +85,8 @@ bool Viewer::is_lit(const SeenPlace& place) const {
     if (lx > 0.0f) brightest.emplace_back(-lx, light);
   }
   const size_t asked = std::min(brightest.size(), most_shadow_rays);
-  std::partial_sort(brightest.begin(), brightest.begin() + static_cast<std::ptrdiff_t>(asked), brightest.end());
-  return std::any_of(brightest.begin(), brightest.begin() + static_cast<std::ptrdiff_t>(asked), [&](const auto& each) {
+  std::partial_sort(brightest.begin(), brightest.begin() + static_cast<ptrdiff_t>(asked), brightest.end());
+  return std::any_of(brightest.begin(), brightest.begin() + static_cast<ptrdiff_t>(asked), [&](const auto& each) {
     return each.second->shadowless != 0 || sees(rays_, *each.second, place.position_ws);
   });
 }

@@ -50,7 +50,7 @@ bool write_all(int descriptor, std::string_view bytes) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
+    bytes.remove_prefix(static_cast<size_t>(written));
   }
   return true;
 }
@@ -62,9 +62,9 @@ bool written_in_place(const fs::path& path) {
 }
 
 std::vector<float> radiance_rgb(const Picture& picture) {
-  const std::size_t count = std::size_t{picture.width} * picture.height;
+  const size_t count = size_t{picture.width} * picture.height;
   std::vector<float> rgb(3 * count);
-  for (std::size_t i = 0; i < count; ++i) std::copy_n(&picture.radiance[4 * i], 3, &rgb[3 * i]);
+  for (size_t i = 0; i < count; ++i) std::copy_n(&picture.radiance[4 * i], 3, &rgb[3 * i]);
   return rgb;
 }
 
@@ -72,7 +72,7 @@ void write_pfm(const fs::path& path, const Picture& picture) {
   static_assert(std::endian::native == std::endian::little, "the scale below says little endian");
   const std::vector<float> rgb = radiance_rgb(picture);
   std::string bytes = fmt::format("PF\n{} {}\n-1.0\n", picture.width, picture.height);
-  const std::size_t row_bytes = std::size_t{picture.width} * 3 * sizeof(float);
+  const size_t row_bytes = size_t{picture.width} * 3 * sizeof(float);
   for (uint32_t y = picture.height; y-- > 0;)  // PFM starts at the bottom
     bytes.append(reinterpret_cast<const char*>(rgb.data()) + y * row_bytes, row_bytes);
   write_file(path, bytes);
@@ -126,15 +126,15 @@ void write_picture(const fs::path& path, const Picture& picture) {
     case ImageKind::png:
       break;
   }
-  std::vector<uint8_t> rgb(std::size_t{picture.width} * picture.height * 3);
-  for (std::size_t i = 0; i < rgb.size() / 3; ++i) std::copy_n(&picture.shown[4 * i], 3, &rgb[3 * i]);
+  std::vector<uint8_t> rgb(size_t{picture.width} * picture.height * 3);
+  for (size_t i = 0; i < rgb.size() / 3; ++i) std::copy_n(&picture.shown[4 * i], 3, &rgb[3 * i]);
   write_png(path, picture.width, picture.height, rgb);
 }
 
 void write_png(const fs::path& path, uint32_t width, uint32_t height, std::span<const uint8_t> rgb) {
   std::string bytes;
   const auto append = [](void* to, void* data, int size) {
-    static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+    static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<size_t>(size));
   };
   if (stbi_write_png_to_func(append, &bytes, static_cast<int>(width), static_cast<int>(height), 3, rgb.data(),
                              static_cast<int>(width * 3)) == 0)

@@ -28,7 +28,7 @@ using namespace chandelier::player;
 
 int list_devices() {
   const auto devices = gpu::list_devices();
-  for (std::size_t i = 0; i < devices.size(); ++i)
+  for (size_t i = 0; i < devices.size(); ++i)
     fmt::print("{}  {} ({}){}\n", i, devices[i].name, devices[i].driver,
                devices[i].unfit.empty() ? "" : ": cannot be used, " + devices[i].unfit);
   return 0;

@@ -98,7 +98,7 @@ void read_setting(const Setting& setting, const std::string& text, Value& value)
 }
 
 bool is_typed(const Typed& typed, std::string_view option) {
-  for (std::size_t i = 0; i < typed.settings.size(); ++i)
+  for (size_t i = 0; i < typed.settings.size(); ++i)
     if (recipe_settings()[i].option == option) return !typed.settings[i].empty();
   return false;
 }
@@ -110,9 +110,9 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
     throw UsageError(
         fmt::format("no such preset: must be one of {} ({})", fmt::join(preset_names(), ", "), preset_name));
   Recipe recipe = preset->recipe;
-  for (std::size_t i = 0; i < typed.answers.size(); ++i)
+  for (size_t i = 0; i < typed.answers.size(); ++i)
     if (!typed.answers[i].empty()) set_answer(recipe, i, typed.answers[i]);
-  for (std::size_t i = 0; i < typed.settings.size(); ++i)
+  for (size_t i = 0; i < typed.settings.size(); ++i)
     if (!typed.settings[i].empty())
       with_setting(recipe, i, [&](auto& value) { read_setting(recipe_settings()[i], typed.settings[i], value); });
   if (const auto reason = refusal(recipe)) throw UsageError(fmt::format("preset {}: {}", preset_name, *reason));
@@ -126,7 +126,7 @@ NamedRecipe make_recipe(const std::string& preset_name, const Typed& typed) {
 // A side of a comparison. Filter and deliver do not apply to truth, only to the other side.
 NamedRecipe make_side(const std::string& preset_name, Typed typed) {
   const NamedRecipe preset = make_recipe(preset_name, Typed{.answers = std::vector<std::string>(typed.answers.size())});
-  for (std::size_t i = 0; i < typed.answers.size(); ++i)
+  for (size_t i = 0; i < typed.answers.size(); ++i)
     if (traces_rays(preset) && (stage_choices()[i].stage == "filter" || stage_choices()[i].stage == "deliver"))
       typed.answers[i].clear();
   return make_recipe(preset_name, typed);
@@ -166,7 +166,7 @@ void read_comparison(const Typed& typed, Options& options) {
   if (typed.keep_shadow_maps)
     throw UsageError(
         "--compare: cannot be used with --keep-shadow-maps, which would let one side use the other's maps");
-  for (std::size_t i = 0; i < typed.answers.size(); ++i)
+  for (size_t i = 0; i < typed.answers.size(); ++i)
     if (stage_choices()[i].stage == "select" && !typed.answers[i].empty())
       throw UsageError("--compare: cannot be used with --select, which would make both sides select alike");
   options.mode = Mode::compare;

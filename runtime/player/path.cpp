@@ -50,7 +50,7 @@ std::vector<Camera> read_keys(const std::filesystem::path& file, const glm::dvec
 
 double rmse_shown(const Picture& a, const Picture& b) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < a.shown.size(); ++i) sum += std::pow((a.shown[i] - b.shown[i]) / 255.0, 2);
+  for (size_t i = 0; i < a.shown.size(); ++i) sum += std::pow((a.shown[i] - b.shown[i]) / 255.0, 2);
   return std::sqrt(sum / (0.75 * static_cast<double>(a.shown.size())));  // alpha is the same everywhere
 }
 
@@ -63,7 +63,7 @@ Picture without_changes(Renderer& renderer, RenderSettings settings, std::span<c
 
 double mean(const std::vector<PathStep>& steps, auto value) {
   double sum = 0.0;
-  for (std::size_t i = 1; i < steps.size(); ++i) sum += static_cast<double>(value(steps[i]));
+  for (size_t i = 1; i < steps.size(); ++i) sum += static_cast<double>(value(steps[i]));
   return sum / static_cast<double>(steps.size() - 1);
 }
 
@@ -92,7 +92,7 @@ std::vector<Camera> cameras_along(const std::vector<Camera>& keys, uint32_t fram
     const float at = frames < 2
                          ? 0.0f
                          : static_cast<float>(i) * static_cast<float>(keys.size() - 1) / static_cast<float>(frames - 1);
-    const std::size_t key = std::min(static_cast<std::size_t>(at), keys.size() - 2);
+    const size_t key = std::min(static_cast<size_t>(at), keys.size() - 2);
     const float part = at - static_cast<float>(key);
     const Camera& a = keys[key];
     const Camera& b = keys[key + 1];
@@ -113,7 +113,7 @@ std::vector<Camera> read_path(const std::filesystem::path& file, uint32_t frames
 
 CenterChanges center_changes(std::span<const uint32_t> before, std::span<const uint32_t> after) {
   CenterChanges changes;
-  for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
+  for (size_t i = 0; i < std::min(before.size(), after.size()); ++i) {
     if (before[i] == pack::none || after[i] == pack::none) continue;
     ++changes.kept_in_view;
     changes.changed += before[i] != after[i];

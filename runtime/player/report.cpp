@@ -48,8 +48,8 @@ std::string side_name(const Comparison& c, bool is_b) {
 
 std::string with_separators(uint64_t number) {
   std::string text = std::to_string(number);
-  for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
-    text.insert(static_cast<std::size_t>(at), "\u202f");  // narrow no-break space
+  for (ptrdiff_t at = static_cast<ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
+    text.insert(static_cast<size_t>(at), "\u202f");  // narrow no-break space
   return text;
 }
 

@@ -35,7 +35,7 @@ constexpr std::array all_counters{
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
+  const size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
@@ -74,9 +74,9 @@ void put(Json& json, const std::string& name, const std::optional<Value>& value)
 Json recipe_json(const Recipe& recipe) {
   Json json = Json::object();
   const auto stages = stage_choices();
-  for (std::size_t i = 0; i < stages.size(); ++i) json[std::string(stages[i].stage)] = answer(recipe, i);
+  for (size_t i = 0; i < stages.size(); ++i) json[std::string(stages[i].stage)] = answer(recipe, i);
   Json& values = json["settings"] = Json::object();
-  for (std::size_t i = 0; i < recipe_settings().size(); ++i)
+  for (size_t i = 0; i < recipe_settings().size(); ++i)
     with_setting(recipe, i, [&](const auto& value) { put(values, std::string(recipe_settings()[i].name), value); });
   return json;
 }
@@ -122,7 +122,7 @@ std::span<const Counter> counters() {
 FrameStats medians(std::span<const FrameStats> frames) {
   FrameStats result = frames.back();
   result.frame_ms = median_of(frames, [](const FrameStats& f) { return f.frame_ms; });
-  for (std::size_t i = 0; i < result.stages.size(); ++i) {
+  for (size_t i = 0; i < result.stages.size(); ++i) {
     result.stages[i].gpu_ms = median_of(frames, [i](const FrameStats& f) { return f.stages.at(i).gpu_ms; });
     result.stages[i].cpu_ms = median_of(frames, [i](const FrameStats& f) { return f.stages.at(i).cpu_ms; });
   }

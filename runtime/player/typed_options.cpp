@@ -183,7 +183,7 @@ CLI::Validator allowed_value(const Setting& setting) {
 void declare_settings(CLI::App& app, Typed& typed) {
   const auto settings = recipe_settings();
   typed.settings.resize(settings.size());
-  for (std::size_t i = 0; i < settings.size(); ++i) {
+  for (size_t i = 0; i < settings.size(); ++i) {
     const Setting& setting = settings[i];
     if (setting.option.empty()) continue;
     std::string help(setting.meaning);
@@ -205,7 +205,7 @@ void declare_recipe(CLI::App& app, Typed& typed) {
       ->group("Recipe");
   const auto stages = stage_choices();
   typed.answers.resize(stages.size());
-  for (std::size_t i = 0; i < stages.size(); ++i) {
+  for (size_t i = 0; i < stages.size(); ++i) {
     const auto answers = names_of(stages[i].answers);
     app.add_option(fmt::format("--{}", stages[i].stage), typed.answers[i],
                    fmt::format("{} {} [the preset's]", stages[i].question, fmt::join(answers, ", ")))

@@ -9,7 +9,8 @@ namespace chandelier {
 /// Two rows for each texture of each material, also where there is none, so that shaders need not ask.
 std::vector<glm::vec3> uv_rows(const pack::View& pack);
 
-/// Fills images, samplers and the material sets of `scene`. Throws gpu::Error, and pack::Error where an image cannot be decoded.
+/// Fills images, samplers and the material sets of `scene`. Throws gpu::Error, and pack::Error where an image cannot be
+/// decoded.
 void upload_textures(const gpu::Device& device, gpu::Uploader& uploader, const pack::View& pack, float anisotropy,
                      GpuScene& scene);
 

@@ -124,7 +124,7 @@ def test_the_bakers_passes_are_known_in_their_order(tmp_path):
     command = tools.bake_command(str(BIN / "chandelier-bake"), ROOM / "room.gltf", tmp_path / "a.chandelier", tmp_path / "cache")
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     # It warns that the room has no lights.
-    *passes, total = [line for line in done.stderr.splitlines() if not tools.TOLD_LINE.match(line)]
+    *passes, total = [line for line in done.stderr.splitlines() if not tools.MESSAGE_LINE.match(line)]
     assert [name for line in passes for name in line.split(" s for ")[1].split(", ")] == list(tools.PASSES)
     # Of passes that share a line the last is found, and nothing in the line that sums up.
     assert [tools.PASS_LINE.match(line)[1] for line in passes] == [line.split(" s for ")[1].split(", ")[-1] for line in passes]

@@ -163,7 +163,8 @@ TEST(LightListTest, LightClustersKeepTheirLightsTogether) {
       const frame::FrameLight& light = list.lights[i];
       EXPECT_FALSE(met[list.light_id[i]]);
       met[list.light_id[i]] = true;
-      EXPECT_EQ(map.projection == frame::Projection::cascade, light.type == static_cast<uint32_t>(pack::LightType::directional));
+      EXPECT_EQ(map.projection == frame::Projection::cascade,
+                light.type == static_cast<uint32_t>(pack::LightType::directional));
       if (map.projection == frame::Projection::cascade) continue;
       EXPECT_LE(glm::distance(light.position_ws, map.center_ws) + light.range_m, map.range_m * 1.000001f);
       EXPECT_GE(map.filter_radius_m, 0.3f * recipe.d_init_m);

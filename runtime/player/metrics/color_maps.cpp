@@ -12,10 +12,10 @@ using Stop = std::array<float, 3>;
 // Evenly spaced stops, straight lines between them.
 std::array<uint8_t, 3> color_along(std::span<const Stop> stops, float t) {
   const float at = std::clamp(t, 0.0f, 1.0f) * static_cast<float>(stops.size() - 1);
-  const std::size_t i = std::min(static_cast<std::size_t>(at), stops.size() - 2);
+  const size_t i = std::min(static_cast<size_t>(at), stops.size() - 2);
   const float part = at - static_cast<float>(i);
   std::array<uint8_t, 3> color{};
-  for (std::size_t c = 0; c < 3; ++c)
+  for (size_t c = 0; c < 3; ++c)
     color[c] = static_cast<uint8_t>(std::lround(stops[i][c] + part * (stops[i + 1][c] - stops[i][c])));
   return color;
 }

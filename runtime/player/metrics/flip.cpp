@@ -97,23 +97,23 @@ Plane as_seen(const Plane& plane, std::span<const Sensitivity> terms) {
     weights.push_back(term.amplitude * std::sqrt(pi / term.b) * along_a_line * along_a_line);
     total += weights.back();
   }
-  for (std::size_t i = 0; i < terms.size(); ++i) {
+  for (size_t i = 0; i < terms.size(); ++i) {
     const Kernel kernel = normalised(gaussian(radius, sigma_px(terms[i].b)));
     const Plane part = filtered(plane, kernel, kernel);
-    for (std::size_t p = 0; p < sum.values.size(); ++p) sum.values[p] += weights[i] / total * part.values[p];
+    for (size_t p = 0; p < sum.values.size(); ++p) sum.values[p] += weights[i] / total * part.values[p];
   }
   return sum;
 }
 
 Channels opponent_channels(const ColorSpaces& spaces, const Picture& picture) {
   std::array<double, 256> linear_of{};
-  for (std::size_t i = 0; i < linear_of.size(); ++i) linear_of[i] = linear(static_cast<uint8_t>(i));
+  for (size_t i = 0; i < linear_of.size(); ++i) linear_of[i] = linear(static_cast<uint8_t>(i));
   Channels channels;
   channels.fill({picture.width, picture.height, {}});
-  for (std::size_t i = 0; i < picture.shown.size(); i += 4) {
+  for (size_t i = 0; i < picture.shown.size(); i += 4) {
     const uint8_t* const p = &picture.shown[i];
     const glm::dvec3 c = ycxcz(spaces, {linear_of[p[0]], linear_of[p[1]], linear_of[p[2]]});
-    for (int k = 0; k < 3; ++k) channels[static_cast<std::size_t>(k)].values.push_back(c[k]);
+    for (int k = 0; k < 3; ++k) channels[static_cast<size_t>(k)].values.push_back(c[k]);
   }
   return channels;
 }
@@ -122,10 +122,10 @@ Channels opponent_channels(const ColorSpaces& spaces, const Picture& picture) {
 Channels seen_colors(const ColorSpaces& spaces, const Channels& channels) {
   Channels seen{as_seen(channels[0], luminance_sensitivity), as_seen(channels[1], red_green_sensitivity),
                 as_seen(channels[2], blue_yellow_sensitivity)};
-  for (std::size_t i = 0; i < seen[0].values.size(); ++i) {
+  for (size_t i = 0; i < seen[0].values.size(); ++i) {
     const glm::dvec3 rgb = rgb_of_ycxcz(spaces, {seen[0].values[i], seen[1].values[i], seen[2].values[i]});
     const glm::dvec3 lab = hunt_lab(spaces, glm::clamp(rgb, 0.0, 1.0));
-    for (int k = 0; k < 3; ++k) seen[static_cast<std::size_t>(k)].values[i] = lab[k];
+    for (int k = 0; k < 3; ++k) seen[static_cast<size_t>(k)].values[i] = lab[k];
   }
   return seen;
 }
@@ -151,7 +151,7 @@ struct Features {
 };
 
 Plane magnitude(Plane x, const Plane& y) {
-  for (std::size_t i = 0; i < x.values.size(); ++i) x.values[i] = std::hypot(x.values[i], y.values[i]);
+  for (size_t i = 0; i < x.values.size(); ++i) x.values[i] = std::hypot(x.values[i], y.values[i]);
   return x;
 }
 
@@ -163,8 +163,8 @@ Features features(Plane luminance) {
   const Kernel bell = gaussian(radius, sigma);
   Kernel slope = bell, bend = bell;
   for (int x = -radius; x <= radius; ++x) {
-    slope[static_cast<std::size_t>(x + radius)] *= -x;
-    bend[static_cast<std::size_t>(x + radius)] *= x * x / (sigma * sigma) - 1.0;
+    slope[static_cast<size_t>(x + radius)] *= -x;
+    bend[static_cast<size_t>(x + radius)] *= x * x / (sigma * sigma) - 1.0;
   }
   const Kernel even = normalised(bell), first = balanced(slope), second = balanced(bend);
   return {magnitude(filtered(luminance, first, even), filtered(luminance, even, first)),
@@ -180,7 +180,7 @@ std::vector<float> flip_map(const Picture& a, const Picture& b) {
   const Channels seen_a = seen_colors(spaces, channels_a), seen_b = seen_colors(spaces, channels_b);
   const double largest = std::pow(hyab(hunt_lab(spaces, {0, 1, 0}), hunt_lab(spaces, {0, 0, 1})), color_exponent);
   std::vector<float> map(channels_a[0].values.size());
-  for (std::size_t i = 0; i < map.size(); ++i) {
+  for (size_t i = 0; i < map.size(); ++i) {
     const auto lab = [i](const Channels& seen) {
       return glm::dvec3(seen[0].values[i], seen[1].values[i], seen[2].values[i]);
     };

@@ -10,13 +10,13 @@
 namespace chandelier::player {
 namespace {
 
-void filter_row(const Kernel& kernel, const double* from, std::size_t count, double* to) {
-  const std::size_t radius = kernel.size() / 2;
+void filter_row(const Kernel& kernel, const double* from, size_t count, double* to) {
+  const size_t radius = kernel.size() / 2;
   std::vector<double> line(count + 2 * radius);
-  for (std::size_t i = 0; i < line.size(); ++i) line[i] = from[std::clamp(i, radius, radius + count - 1) - radius];
+  for (size_t i = 0; i < line.size(); ++i) line[i] = from[std::clamp(i, radius, radius + count - 1) - radius];
   std::fill_n(to, count, 0.0);
-  for (std::size_t k = 0; k < kernel.size(); ++k)
-    for (std::size_t i = 0; i < count; ++i) to[i] += kernel[k] * line[i + k];
+  for (size_t k = 0; k < kernel.size(); ++k)
+    for (size_t i = 0; i < count; ++i) to[i] += kernel[k] * line[i + k];
 }
 
 }  // namespace
@@ -34,21 +34,20 @@ Kernel normalised(Kernel kernel) {
 }
 
 Plane filtered(const Plane& plane, const Kernel& along_x, const Kernel& along_y) {
-  const std::size_t width = plane.width, height = plane.height;
+  const size_t width = plane.width, height = plane.height;
   Plane rows = plane;
-  pack::parallel_for(
-      height, 0, [&](std::size_t y) { filter_row(along_x, &plane.values[y * width], width, &rows.values[y * width]); });
+  pack::parallel_for(height, 0,
+                     [&](size_t y) { filter_row(along_x, &plane.values[y * width], width, &rows.values[y * width]); });
   Plane result = plane;
-  const auto radius = static_cast<std::ptrdiff_t>(along_y.size() / 2);
-  const auto last = static_cast<std::ptrdiff_t>(height) - 1;
-  pack::parallel_for(height, 0, [&](std::size_t y) {
+  const auto radius = static_cast<ptrdiff_t>(along_y.size() / 2);
+  const auto last = static_cast<ptrdiff_t>(height) - 1;
+  pack::parallel_for(height, 0, [&](size_t y) {
     double* const to = &result.values[y * width];
     std::fill_n(to, width, 0.0);
-    for (std::ptrdiff_t k = -radius; k <= radius; ++k) {
-      const auto row =
-          static_cast<std::size_t>(std::clamp(static_cast<std::ptrdiff_t>(y) + k, std::ptrdiff_t{0}, last));
-      const double weight = along_y[static_cast<std::size_t>(k + radius)];
-      for (std::size_t x = 0; x < width; ++x) to[x] += weight * rows.values[row * width + x];
+    for (ptrdiff_t k = -radius; k <= radius; ++k) {
+      const auto row = static_cast<size_t>(std::clamp(static_cast<ptrdiff_t>(y) + k, ptrdiff_t{0}, last));
+      const double weight = along_y[static_cast<size_t>(k + radius)];
+      for (size_t x = 0; x < width; ++x) to[x] += weight * rows.values[row * width + x];
     }
   });
   return result;
