@@ -211,7 +211,7 @@ class Checked(GltfCase):
         self.assertEqual(self.check_after(lambda *_: None), part("core.gltf_check").Check(lights=2))
 
     def test_a_missing_light(self):
-        self.assert_told(lambda gltf, nodes, lights: nodes["Here"].pop("extensions"), "Here", "not in the file")
+        self.assert_told(lambda gltf, nodes, lights: nodes["Here"].pop("extensions"), "Here", "the file has no light")
 
     def test_a_moved_light(self):
         def move(gltf, nodes, lights):
