@@ -146,7 +146,7 @@ class Truth(SceneTest):
         self.assertEqual(truth["counters"]["lights_in_view"], found[2]["b"]["counters"]["lights_in_view"])
 
 
-# Counters of what the picture shows, which nothing tells before it is drawn.
+# Counters of edges in the picture, and what they take: a prediction does not tell them.
 OF_THE_PICTURE = {"edge_pixels", "edge_surfaces", "sample_bytes"}
 
 
